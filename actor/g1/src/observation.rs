@@ -1,0 +1,135 @@
+//! What the policy and the discriminator see (Section III-A): 82 and 53 numbers.
+//!
+//! Separate because simulated and reference motion must pass through the very same lines;
+//! a difference in layout would be the discriminator's easiest clue.
+
+use crate::{DEFAULT_POSE, FEATURES, JOINTS, OBSERVATION, RobotState};
+use std::ops::Range;
+
+/// Pelvis height, m.
+pub const HEIGHT: usize = 0;
+/// Pelvis velocity in the base frame, m/s.
+pub const LINEAR_VELOCITY: Range<usize> = 1..4;
+/// Pelvis angular velocity in the base frame, rad/s.
+pub const ANGULAR_VELOCITY: Range<usize> = 4..7;
+/// Direction of gravity in the base frame.
+pub const GRAVITY: Range<usize> = 7..10;
+/// Command: forward, leftward velocity (m/s), yaw rate (rad/s).
+pub const COMMAND: Range<usize> = 10..13;
+/// Joint positions relative to the default pose, rad.
+pub const JOINT_POSITION: Range<usize> = 13..36;
+/// Joint velocities, rad/s.
+pub const JOINT_VELOCITY: Range<usize> = 36..59;
+/// The action of the step before.
+pub const PREVIOUS_ACTION: Range<usize> = 59..82;
+
+/// Joint positions (absolute, rad) in [`features`], whose first seven numbers are laid out as here.
+pub const FEATURE_JOINT_POSITION: Range<usize> = 7..30;
+/// Joint velocities (rad/s) in [`features`].
+pub const FEATURE_JOINT_VELOCITY: Range<usize> = 30..53;
+
+/// Writes the policy's observation of a state into `out` (82 numbers).
+///
+/// # Panics
+/// If `out` is not 82 long.
+pub fn policy_observation(
+    state: &RobotState,
+    command: &[f32; crate::COMMAND],
+    previous_action: &[f32; JOINTS],
+    out: &mut [f32],
+) {
+    assert_eq!(out.len(), OBSERVATION, "an observation has 82 numbers");
+    write_base(state, out);
+    out[GRAVITY].copy_from_slice(state.projected_gravity().as_slice());
+    out[COMMAND].copy_from_slice(command);
+    for (i, relative) in out[JOINT_POSITION].iter_mut().enumerate() {
+        *relative = state.joint_positions[i] - DEFAULT_POSE[i];
+    }
+    out[JOINT_VELOCITY].copy_from_slice(&state.joint_velocities);
+    out[PREVIOUS_ACTION].copy_from_slice(previous_action);
+}
+
+/// Writes what the discriminator sees of a state into `out` (53 numbers).
+///
+/// # Panics
+/// If `out` is not 53 long.
+pub fn features(state: &RobotState, out: &mut [f32]) {
+    assert_eq!(out.len(), FEATURES, "the features of a step are 53 numbers");
+    write_base(state, out);
+    out[FEATURE_JOINT_POSITION].copy_from_slice(&state.joint_positions);
+    out[FEATURE_JOINT_VELOCITY].copy_from_slice(&state.joint_velocities);
+}
+
+fn write_base(state: &RobotState, out: &mut [f32]) {
+    out[HEIGHT] = state.position.z;
+    out[LINEAR_VELOCITY].copy_from_slice(state.velocity_in_base().as_slice());
+    out[ANGULAR_VELOCITY].copy_from_slice(state.angular_velocity_in_base().as_slice());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{UnitQuaternion, Vector3};
+    use std::f32::consts::FRAC_PI_2;
+
+    /// Facing world y, moving along it at 2 m/s, turning left at 0.5 rad/s, joint i at i/10, speed i.
+    fn moving() -> RobotState {
+        RobotState {
+            position: Vector3::new(5.0, 6.0, 0.7),
+            orientation: UnitQuaternion::from_euler_angles(0.0, 0.0, FRAC_PI_2),
+            linear_velocity: Vector3::new(0.0, 2.0, 0.25),
+            angular_velocity: Vector3::new(0.0, 0.0, 0.5),
+            joint_positions: std::array::from_fn(|i| i as f32 / 10.0),
+            joint_velocities: std::array::from_fn(|i| i as f32),
+        }
+    }
+
+    fn assert_close(got: &[f32], expected: &[f32]) {
+        assert_eq!(got.len(), expected.len());
+        for (a, b) in got.iter().zip(expected) {
+            assert!((a - b).abs() < 1e-6, "{got:?} is not {expected:?}");
+        }
+    }
+
+    #[test]
+    fn the_policy_sees_82_numbers() {
+        let mut out = [f32::NAN; OBSERVATION];
+        let action = std::array::from_fn(|i| -(i as f32));
+        policy_observation(&moving(), &[1.0, -0.5, 0.25], &action, &mut out);
+        assert_close(&out[..7], &[0.7, 2.0, 0.0, 0.25, 0.0, 0.0, 0.5]);
+        assert_close(&out[7..13], &[0.0, 0.0, -1.0, 1.0, -0.5, 0.25]);
+        // Left hip pitch is at 0.0 with default −0.1; left knee at 0.3 with default 0.3.
+        assert_close(&out[13..17], &[0.1, 0.1, 0.2, 0.0]);
+        assert_close(&out[36..39], &[0.0, 1.0, 2.0]);
+        assert_close(&out[59..62], &[0.0, -1.0, -2.0]);
+        assert_eq!(out[81], -22.0);
+    }
+
+    #[test]
+    fn the_discriminator_sees_53_numbers_without_place_or_heading() {
+        let mut out = [f32::NAN; FEATURES];
+        features(&moving(), &mut out);
+        assert_close(&out[..7], &[0.7, 2.0, 0.0, 0.25, 0.0, 0.0, 0.5]);
+        assert_close(&out[7..10], &[0.0, 0.1, 0.2]); // absolute, not relative to the default pose
+        assert_close(&out[29..31], &[2.2, 0.0]);
+        assert_eq!(out[52], 22.0);
+
+        let mut elsewhere = moving();
+        elsewhere.position.x -= 100.0;
+        elsewhere.orientation = UnitQuaternion::identity();
+        elsewhere.linear_velocity = Vector3::new(2.0, 0.0, 0.25);
+        let mut same = [f32::NAN; FEATURES];
+        features(&elsewhere, &mut same);
+        assert_close(&same, &out);
+    }
+
+    #[test]
+    fn standing_is_zero_but_for_height_and_gravity() {
+        let mut out = [f32::NAN; OBSERVATION];
+        policy_observation(&RobotState::standing(), &[0.0; 3], &[0.0; JOINTS], &mut out);
+        let mut expected = [0.0; OBSERVATION];
+        expected[HEIGHT] = 0.784_202_2;
+        expected[GRAVITY.end - 1] = -1.0;
+        assert_close(&out, &expected);
+    }
+}

@@ -1,0 +1,130 @@
+//! A state of the robot and the frames that it is seen from.
+//!
+//! Separate because simulated and reference motion meet here: both are a `RobotState` per frame.
+
+use crate::{DEFAULT_POSE, JOINTS};
+use nalgebra::{UnitQuaternion, Vector2, Vector3};
+use serde::{Deserialize, Serialize};
+
+/// Height of the pelvis when the default pose stands flat on the ground, m (sole at z = 0).
+pub const STANDING_HEIGHT: f64 = 0.7842021819153314;
+
+/// Where every body is and how it moves: the free base plus 23 joints.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RobotState {
+    /// Origin of the pelvis link in the world, m.
+    pub position: Vector3<f32>,
+    /// Orientation of the pelvis: turns base-frame vectors into world vectors.
+    pub orientation: UnitQuaternion<f32>,
+    /// Velocity of the pelvis origin in the world frame, m/s.
+    pub linear_velocity: Vector3<f32>,
+    /// Angular velocity of the pelvis in the world frame, rad/s.
+    pub angular_velocity: Vector3<f32>,
+    /// Joint positions, rad.
+    pub joint_positions: [f32; JOINTS],
+    /// Joint velocities, rad/s.
+    pub joint_velocities: [f32; JOINTS],
+}
+
+impl RobotState {
+    /// At rest in the default pose, soles on the ground at the world's origin, facing x.
+    pub fn standing() -> Self {
+        Self {
+            position: Vector3::new(0.0, 0.0, STANDING_HEIGHT as f32),
+            orientation: UnitQuaternion::identity(),
+            linear_velocity: Vector3::zeros(),
+            angular_velocity: Vector3::zeros(),
+            joint_positions: DEFAULT_POSE,
+            joint_velocities: [0.0; JOINTS],
+        }
+    }
+
+    /// Direction of gravity in the base frame, unit length: (0, 0, −1) when upright.
+    pub fn projected_gravity(&self) -> Vector3<f32> {
+        self.orientation.inverse_transform_vector(&-Vector3::z())
+    }
+
+    /// Velocity of the pelvis in the base frame, m/s.
+    pub fn velocity_in_base(&self) -> Vector3<f32> {
+        self.orientation
+            .inverse_transform_vector(&self.linear_velocity)
+    }
+
+    /// Angular velocity of the pelvis in the base frame, rad/s.
+    pub fn angular_velocity_in_base(&self) -> Vector3<f32> {
+        self.orientation
+            .inverse_transform_vector(&self.angular_velocity)
+    }
+
+    /// Planar velocity in the heading frame, m/s: the world turned by yaw only, x where the robot faces.
+    pub fn velocity_in_heading(&self) -> Vector2<f32> {
+        let (sin, cos) = self.yaw().sin_cos();
+        let v = self.linear_velocity;
+        Vector2::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x)
+    }
+
+    /// Heading of the pelvis, rad in (−π, π]: the yaw of R = Rz(yaw)·Ry(pitch)·Rx(roll).
+    pub fn yaw(&self) -> f32 {
+        let q = self.orientation;
+        (2.0 * (q.w * q.k + q.i * q.j)).atan2(1.0 - 2.0 * (q.j * q.j + q.k * q.k))
+    }
+
+    /// Whether every number is finite.
+    pub fn is_finite(&self) -> bool {
+        self.position.iter().all(|x| x.is_finite())
+            && self.orientation.coords.iter().all(|x| x.is_finite())
+            && self.linear_velocity.iter().all(|x| x.is_finite())
+            && self.angular_velocity.iter().all(|x| x.is_finite())
+            && self.joint_positions.iter().all(|x| x.is_finite())
+            && self.joint_velocities.iter().all(|x| x.is_finite())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
+
+    fn close(a: Vector3<f32>, b: Vector3<f32>) -> bool {
+        (a - b).norm() < 1e-6
+    }
+
+    #[test]
+    fn gravity_points_down_when_upright_and_to_where_the_robot_leans() {
+        let mut state = RobotState::standing();
+        assert_eq!(state.projected_gravity(), -Vector3::z());
+        // Pitched forward by a quarter turn the robot lies on its face: down is its own +x.
+        state.orientation = UnitQuaternion::from_euler_angles(0.0, FRAC_PI_2, 0.0);
+        assert!(close(state.projected_gravity(), Vector3::x()));
+        // Rolled by +90° about x the left side is up: down is its own −y.
+        state.orientation = UnitQuaternion::from_euler_angles(FRAC_PI_2, 0.0, 0.0);
+        assert!(close(state.projected_gravity(), -Vector3::y()));
+    }
+
+    #[test]
+    fn heading_frame_turns_with_yaw_only() {
+        let mut state = RobotState::standing();
+        state.linear_velocity = Vector3::new(0.0, 1.0, 0.5);
+        // Facing world y and pitched: moving along world y is moving straight ahead.
+        state.orientation = UnitQuaternion::from_euler_angles(0.1, FRAC_PI_4, FRAC_PI_2);
+        assert!((state.yaw() - FRAC_PI_2).abs() < 1e-6);
+        assert!((state.velocity_in_heading() - Vector2::new(1.0, 0.0)).norm() < 1e-6);
+        // Facing world x the same motion is to the left.
+        state.orientation = UnitQuaternion::identity();
+        assert_eq!(state.velocity_in_heading(), Vector2::new(0.0, 1.0));
+    }
+
+    #[test]
+    fn base_frame_turns_with_the_pelvis() {
+        let mut state = RobotState::standing();
+        state.orientation = UnitQuaternion::from_euler_angles(0.0, 0.0, FRAC_PI_2);
+        state.linear_velocity = Vector3::new(0.0, 2.0, 3.0);
+        state.angular_velocity = Vector3::new(1.0, 0.0, 0.0);
+        // Facing y: world y is ahead, and world x is to the right (−y of the base).
+        assert!(close(state.velocity_in_base(), Vector3::new(2.0, 0.0, 3.0)));
+        assert!(close(
+            state.angular_velocity_in_base(),
+            Vector3::new(0.0, -1.0, 0.0)
+        ));
+    }
+}
