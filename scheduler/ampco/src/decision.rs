@@ -1,0 +1,101 @@
+//! What the schedule answers to a report.
+
+use crate::{Bounds, Granularity, Rule};
+
+/// The phase of training. Bounds exist in phase II only, and there is no way back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Phase {
+    /// Imitation leads, convergence is being looked for.
+    One,
+    /// Convergence was found.
+    Two(Switch),
+}
+
+impl Phase {
+    /// 1 or 2, as it is written in logs.
+    pub fn number(&self) -> u32 {
+        match self {
+            Self::One => 1,
+            Self::Two(_) => 2,
+        }
+    }
+}
+
+/// The moment in which convergence was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Switch {
+    /// Iteration whose report showed it.
+    pub iteration: u64,
+    /// Bounds of Eq. 13, fixed from then on.
+    pub bounds: Bounds,
+    /// Slope of the reward window at that moment, in reward per iteration.
+    pub trend: f64,
+}
+
+impl Switch {
+    /// What speaks against this switch.
+    pub fn warning(&self) -> Option<Warning> {
+        (self.trend < 0.0).then_some(Warning::RewardWasFalling { trend: self.trend })
+    }
+}
+
+/// A doubt about the phase switch. It is told, not acted upon: the rule is Algorithm 1's.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Warning {
+    /// A falling reward breaks out as rarely as a converged one.
+    #[error(
+        "the style reward was falling when convergence was found (trend {trend:.2e} per iteration): this may be a decline, not a plateau; arm = \"after_rise\" waits for a rise"
+    )]
+    RewardWasFalling {
+        /// Slope of the reward window, below zero.
+        trend: f64,
+    },
+}
+
+/// The answer to one report: valid from the next iteration on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Decision {
+    /// Iteration of the report that it answers.
+    pub iteration: u64,
+    /// Phase of training.
+    pub phase: Phase,
+    /// How rewards become weights.
+    pub rule: Rule,
+    /// Whose rewards the rule is evaluated on.
+    pub granularity: Granularity,
+    /// β, once W indicators exist.
+    pub breakout_rate: Option<f64>,
+    /// 1 − p, below which β means convergence.
+    pub threshold: f64,
+    /// Slope of the reward window, in reward per iteration, once it holds two values.
+    pub trend: Option<f64>,
+}
+
+impl Decision {
+    /// Iteration in which convergence was found.
+    pub fn switched_at(&self) -> Option<u64> {
+        self.switch().map(|switch| switch.iteration)
+    }
+
+    /// Whether this very report brought phase II.
+    pub fn just_switched(&self) -> bool {
+        self.switched_at() == Some(self.iteration)
+    }
+
+    /// Bounds of phase II.
+    pub fn bounds(&self) -> Option<Bounds> {
+        self.switch().map(|switch| switch.bounds)
+    }
+
+    /// What speaks against the switch that was made; stands as long as phase II does.
+    pub fn warning(&self) -> Option<Warning> {
+        self.switch().and_then(|switch| switch.warning())
+    }
+
+    fn switch(&self) -> Option<Switch> {
+        match self.phase {
+            Phase::One => None,
+            Phase::Two(switch) => Some(switch),
+        }
+    }
+}

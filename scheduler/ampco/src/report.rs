@@ -1,0 +1,76 @@
+//! What the learner says about one iteration, and why a report may be refused.
+
+/// Rewards of one iteration's batch, before blending.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Report {
+    /// Number of the iteration; reports come in rising order.
+    pub iteration: u64,
+    /// r̄ˢ, mean style reward over the batch's transitions.
+    pub style_mean: f64,
+    /// σˢ, standard deviation of the style reward over the same transitions.
+    pub style_std: f64,
+    /// Mean task reward over the same transitions.
+    pub task_mean: f64,
+}
+
+/// Why a report was refused. The schedule is then as it was before.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ReportError {
+    /// NaN or infinite.
+    #[error("{field} of iteration {iteration} is {value}, not a finite number")]
+    NotFinite {
+        /// Iteration of the report.
+        iteration: u64,
+        /// Field of [`Report`].
+        field: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A standard deviation below zero.
+    #[error("style_std of iteration {iteration} is {value}, below zero")]
+    NegativeDeviation {
+        /// Iteration of the report.
+        iteration: u64,
+        /// Its value.
+        value: f64,
+    },
+    /// A report seen before, or from before the newest one.
+    #[error("iteration {iteration} does not follow iteration {newest}")]
+    OutOfOrder {
+        /// Iteration of the report.
+        iteration: u64,
+        /// Newest iteration observed.
+        newest: u64,
+    },
+}
+
+impl Report {
+    pub(crate) fn check(&self, newest: Option<u64>) -> Result<(), ReportError> {
+        let iteration = self.iteration;
+        for (field, value) in [
+            ("style_mean", self.style_mean),
+            ("style_std", self.style_std),
+            ("task_mean", self.task_mean),
+        ] {
+            if !value.is_finite() {
+                return Err(ReportError::NotFinite {
+                    iteration,
+                    field,
+                    value,
+                });
+            }
+        }
+        if self.style_std < 0.0 {
+            return Err(ReportError::NegativeDeviation {
+                iteration,
+                value: self.style_std,
+            });
+        }
+        match newest {
+            Some(newest) if iteration <= newest => {
+                Err(ReportError::OutOfOrder { iteration, newest })
+            }
+            _ => Ok(()),
+        }
+    }
+}

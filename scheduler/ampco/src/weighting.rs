@@ -1,0 +1,154 @@
+//! The rules that turn rewards into weights, as rivals side by side.
+//!
+//! The scheduler chooses a [`Rule`]; whoever holds the rewards evaluates it. Both call the functions of this module, so
+//! a rule can travel between processes as a few numbers and means the same at both ends.
+
+pub mod adamimic;
+pub mod guidance;
+pub mod roger;
+
+use crate::Weights;
+
+/// How the weights of Eq. 1 follow from the rewards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rule {
+    /// Constant weights: plain AMP.
+    Fixed {
+        /// wˢ in \[0, 1\].
+        style_weight: f32,
+    },
+    /// Adaptive Imitation Guidance, the task weight grows with the style reward (Eq. 9): AMPCO's phase I.
+    Guided {
+        /// R* > 0 of the style reward.
+        ceiling: f32,
+    },
+    /// The task weight grows with the task reward: the AdaMimic baseline.
+    AdaMimic {
+        /// R* > 0 of the task reward.
+        ceiling: f32,
+    },
+    /// The style weight grows as the style reward sinks from the upper to the lower bound (Eq. 12): phase II, and ROGER.
+    Bounded {
+        /// μ lower.
+        lower: f32,
+        /// μ upper > μ lower.
+        upper: f32,
+    },
+}
+
+/// Why a rule that came from elsewhere cannot be evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum RuleError {
+    /// A style weight that is no share.
+    #[error("style weight {0} is outside [0, 1]")]
+    StyleWeight(f32),
+    /// A ceiling that cannot divide.
+    #[error("ceiling {0} is not a positive finite number")]
+    Ceiling(f32),
+    /// Bounds that enclose nothing.
+    #[error("lower bound {lower} is not below the upper bound {upper}, or one is not finite")]
+    Bounds {
+        /// μ lower as received.
+        lower: f32,
+        /// μ upper as received.
+        upper: f32,
+    },
+}
+
+impl Rule {
+    /// Weights for one pair of rewards: of a transition, or the batch's means (see [`crate::Granularity`]).
+    pub fn weights(&self, style_reward: f32, task_reward: f32) -> Weights {
+        match *self {
+            Self::Fixed { style_weight } => Weights::from_style(style_weight),
+            Self::Guided { ceiling } => {
+                Weights::from_task(guidance::task_weight(style_reward, ceiling))
+            }
+            Self::AdaMimic { ceiling } => {
+                Weights::from_task(adamimic::task_weight(task_reward, ceiling))
+            }
+            Self::Bounded { lower, upper } => {
+                Weights::from_style(roger::style_weight(style_reward, lower, upper))
+            }
+        }
+    }
+
+    /// Refuses parameters that would make [`Self::weights`] meaningless; rules made by a [`crate::Schedule`] pass.
+    pub fn validate(&self) -> Result<(), RuleError> {
+        match *self {
+            Self::Fixed { style_weight } if !(0.0..=1.0).contains(&style_weight) => {
+                Err(RuleError::StyleWeight(style_weight))
+            }
+            Self::Guided { ceiling } | Self::AdaMimic { ceiling }
+                if !(ceiling.is_finite() && ceiling > 0.0) =>
+            {
+                Err(RuleError::Ceiling(ceiling))
+            }
+            Self::Bounded { lower, upper } if !(lower < upper && (upper - lower).is_finite()) => {
+                Err(RuleError::Bounds { lower, upper })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_rule_listens_to_its_own_reward() {
+        // style 0.5, task 0.2, every ceiling 1
+        assert_eq!(
+            Rule::Fixed { style_weight: 0.7 }.weights(0.5, 0.2).style(),
+            0.7
+        );
+        assert_eq!(Rule::Guided { ceiling: 1.0 }.weights(0.5, 0.2).task(), 0.25); // 0.5²
+        assert!((Rule::AdaMimic { ceiling: 1.0 }.weights(0.5, 0.2).task() - 0.04).abs() < 1e-6); // 0.2²
+        assert_eq!(
+            Rule::Bounded {
+                lower: 0.25,
+                upper: 0.75
+            }
+            .weights(0.5, 0.2)
+            .style(),
+            0.5
+        ); // halfway
+    }
+
+    #[test]
+    fn meaningless_parameters_are_refused() {
+        assert_eq!(
+            Rule::Fixed { style_weight: 1.1 }.validate(),
+            Err(RuleError::StyleWeight(1.1))
+        );
+        assert_eq!(
+            Rule::Guided { ceiling: 0.0 }.validate(),
+            Err(RuleError::Ceiling(0.0))
+        );
+        assert!(Rule::AdaMimic { ceiling: f32::NAN }.validate().is_err());
+        assert!(
+            Rule::Bounded {
+                lower: 0.5,
+                upper: 0.5
+            }
+            .validate()
+            .is_err()
+        );
+        assert!(
+            Rule::Bounded {
+                lower: 0.1,
+                upper: f32::INFINITY
+            }
+            .validate()
+            .is_err()
+        );
+        assert_eq!(
+            Rule::Bounded {
+                lower: 0.1,
+                upper: 0.5
+            }
+            .validate(),
+            Ok(())
+        );
+    }
+}

@@ -1,0 +1,91 @@
+//! Adaptive Imitation Guidance, AMPCO's phase I: Eq. 8 and Eq. 9.
+
+use crate::CeilingKind;
+
+/// Largest style reward that Eq. 7 can pay, and largest task reward that Eq. 14 can pay:  max rᴳ = max rˢ = R*   (Eq. 8)
+pub const EXPECTED_MAXIMUM: f32 = 1.0;
+
+/// Smallest ceiling handed out: a running maximum of zero could not divide.
+const SMALLEST_CEILING: f64 = 1e-6;
+
+/// Task weight of Adaptive Imitation Guidance:  wᴳ = min((rˢ / R*)², 1)   (Eq. 9)
+///
+/// The task is allowed in only as far as the motion already convinces the discriminator.
+pub fn task_weight(style_reward: f32, ceiling: f32) -> f32 {
+    (style_reward / ceiling).powi(2).min(1.0)
+}
+
+/// R*, the "current expected maximum reward value" (Eq. 8), of one reward signal.
+///
+/// The paper leaves open whether it is the bound of the reward or what has been reached; [`CeilingKind`] offers both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ceiling {
+    kind: CeilingKind,
+    largest_mean: Option<f64>,
+}
+
+impl Ceiling {
+    /// A ceiling that has seen nothing and stands at the bound.
+    pub fn new(kind: CeilingKind) -> Self {
+        Self {
+            kind,
+            largest_mean: None,
+        }
+    }
+
+    /// Takes an iteration's mean reward into account.
+    pub fn observe(&mut self, mean: f64) {
+        self.largest_mean = Some(self.largest_mean.map_or(mean, |largest| largest.max(mean)));
+    }
+
+    /// R* > 0: the bound, or the largest mean seen so far.
+    pub fn value(&self) -> f32 {
+        match (self.kind, self.largest_mean) {
+            (CeilingKind::RunningMax, Some(largest)) => largest.max(SMALLEST_CEILING) as f32,
+            _ => EXPECTED_MAXIMUM,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn halfway_to_the_ceiling_grants_a_quarter_of_the_reward() {
+        assert_eq!(task_weight(0.5, 1.0), 0.25); // (1/2)²
+        assert_eq!(task_weight(0.25, 0.5), 0.25); // (0.25 / 0.5)²
+    }
+
+    #[test]
+    fn at_and_above_the_ceiling_the_task_gets_everything() {
+        assert_eq!(task_weight(1.0, 1.0), 1.0);
+        assert_eq!(task_weight(0.9, 0.3), 1.0); // 3² = 9, cut to 1
+        assert_eq!(task_weight(0.0, 1.0), 0.0);
+    }
+
+    #[test]
+    fn the_running_maximum_only_rises() {
+        let mut ceiling = Ceiling::new(CeilingKind::RunningMax);
+        assert_eq!(ceiling.value(), 1.0); // nothing seen yet
+        let values = [0.25, 0.5, 0.125].map(|mean| {
+            ceiling.observe(mean);
+            ceiling.value()
+        });
+        assert_eq!(values, [0.25, 0.5, 0.5]);
+    }
+
+    #[test]
+    fn a_reward_of_zero_leaves_a_ceiling_that_can_divide() {
+        let mut ceiling = Ceiling::new(CeilingKind::RunningMax);
+        ceiling.observe(0.0);
+        assert_eq!(task_weight(0.0, ceiling.value()), 0.0);
+    }
+
+    #[test]
+    fn the_bound_does_not_move() {
+        let mut ceiling = Ceiling::new(CeilingKind::Bound);
+        ceiling.observe(0.3);
+        assert_eq!(ceiling.value(), 1.0);
+    }
+}
