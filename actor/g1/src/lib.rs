@@ -8,12 +8,14 @@
 //! | --- | --- |
 //! | masses and inertias of the 24 bodies, the foot box | [`links`] |
 //! | the 23 joints: frames, limits, gains, default pose, the joint order | [`joints`] |
+//! | measures of a gait: hip correlation, duty factor, flight | [`gait`] |
 //! | a state of the robot and its frames | [`state`] |
 //! | what the policy and the discriminator see | [`observation`] |
 //! | left–right reflection | [`mirror`] |
 //! | forward kinematics, Jacobian, foot and mass points | [`kinematics`] |
 #![forbid(unsafe_code)]
 
+pub mod gait;
 pub mod joints;
 pub mod kinematics;
 pub mod links;
