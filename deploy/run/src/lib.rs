@@ -1,1 +1,33 @@
-//! run
+//! A run's folder and what lies in it.
+//!
+//! Every process of a run opens the same folder `runs/<name>/`; this crate is the one place that knows what it holds:
+//!
+//! | entry | what | who writes | module |
+//! | --- | --- | --- | --- |
+//! | `config.toml` | the fully resolved configuration | `ampco train` | [`config`] |
+//! | `metrics.jsonl` | one line of figures per iteration | the learner | [`metrics`] |
+//! | `checkpoints/<iteration>/` | everything that an exact continuation needs | learner, actors | [`checkpoint`] |
+//! | `logs/<process>.log` | the events of one process | that process | [`log`] |
+//! | `<role>.lock` | who is alive in this run | that process | [`folder`] |
+//!
+//! It is separate from the shells because all of them and the command line share it, and it knows neither messages nor
+//! mathematics.
+#![forbid(unsafe_code)]
+
+pub mod checkpoint;
+pub mod config;
+pub mod folder;
+pub mod log;
+pub mod metrics;
+pub mod sections;
+pub mod supervision;
+
+mod assignment;
+mod nearest;
+mod replace;
+
+pub use checkpoint::{Checkpoint, CheckpointError, Checkpoints};
+pub use config::{Config, ConfigError};
+pub use folder::{Folder, FolderError, Lock};
+pub use metrics::{Metrics, MetricsError};
+pub use sections::{Deadlines, FleetConfig, Mode, RunConfig};

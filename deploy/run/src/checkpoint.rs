@@ -1,0 +1,426 @@
+//! Checkpoints: folders of named parts that are complete or absent, and known to be whole.
+//!
+//! A checkpoint is written beside (`.<iteration>.new`), made durable and renamed, so a crash at any
+//! moment leaves the earlier ones as they were. Its manifest holds the length and CRC32 of every
+//! part; opening one checks them all and refuses anything else than what was written, with the
+//! reason and the newest good one. What the parts mean is their owners' business.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::replace;
+
+/// The version of the layout below; raised when an older program could no longer read it.
+pub const FORMAT_VERSION: u32 = 1;
+const FORMAT: &str = "ampco-checkpoint";
+const MANIFEST: &str = "manifest.json";
+
+/// Why a checkpoint cannot be used or written.
+#[derive(Debug, thiserror::Error)]
+pub enum CheckpointError {
+    /// It was looked at and found wanting.
+    #[error("checkpoint {} is refused: {reason}; {}", path.display(), remedy(previous_good.as_deref()))]
+    Refused {
+        /// The checkpoint's folder.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: Refusal,
+        /// The newest older checkpoint of the run that is good.
+        previous_good: Option<PathBuf>,
+    },
+    /// The run has none.
+    #[error("there is no checkpoint in {}", .0.display())]
+    None(PathBuf),
+    /// The system refused, as with a full disk.
+    #[error("cannot use {}", path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        #[source]
+        source: io::Error,
+    },
+}
+
+/// What is wrong with a checkpoint.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Refusal {
+    /// No manifest, or the manifest of something else.
+    #[error("it is not a checkpoint of this program ({0})")]
+    Foreign(String),
+    /// Written by a later version of this program.
+    #[error("its format is version {found}, and this program reads up to {FORMAT_VERSION}")]
+    Newer {
+        /// The version found.
+        found: u32,
+    },
+    /// The manifest is not as it was written.
+    #[error("its manifest is corrupt")]
+    Manifest,
+    /// A part is not there.
+    #[error("part `{0}` is missing")]
+    Missing(String),
+    /// A part is shorter or longer than it was.
+    #[error("part `{part}` is truncated: {found} bytes of {expected}")]
+    Truncated {
+        /// The part.
+        part: String,
+        /// Bytes written.
+        expected: u64,
+        /// Bytes found.
+        found: u64,
+    },
+    /// A part's checksum differs.
+    #[error("part `{0}` is corrupt: its checksum differs")]
+    Corrupt(String),
+    /// It belongs to networks of another shape.
+    #[error("it is of shape `{found}`, and this run's is `{expected}`")]
+    Shape {
+        /// This run's shape.
+        expected: String,
+        /// The checkpoint's.
+        found: String,
+    },
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Manifest {
+    format: String,
+    version: u32,
+    iteration: u64,
+    shape: String,
+    parts: Vec<Part>,
+    /// CRC32 of this manifest written with a seal of 0.
+    seal: u32,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Part {
+    name: String,
+    length: u64,
+    crc: u32,
+}
+
+/// A checkpoint in memory, every part checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checkpoint {
+    /// Iterations done when it was written.
+    pub iteration: u64,
+    /// The owner's description of the networks' shapes.
+    pub shape: String,
+    parts: BTreeMap<String, Vec<u8>>,
+}
+
+impl Checkpoint {
+    /// Opens and checks the checkpoint in a folder, whatever its shape.
+    pub fn open(path: &Path) -> Result<Self, CheckpointError> {
+        Self::inspect(path).map_err(|reason| CheckpointError::Refused {
+            path: path.to_owned(),
+            reason,
+            previous_good: None,
+        })
+    }
+
+    /// The bytes of a part, or `None` when the checkpoint has no such part.
+    pub fn part(&self, name: &str) -> Option<&[u8]> {
+        self.parts.get(name).map(Vec::as_slice)
+    }
+
+    fn inspect(path: &Path) -> Result<Self, Refusal> {
+        let manifest = Manifest::read(path)?;
+        let mut parts = BTreeMap::new();
+        for part in &manifest.parts {
+            let bytes =
+                fs::read(path.join(&part.name)).map_err(|_| Refusal::Missing(part.name.clone()))?;
+            if bytes.len() as u64 != part.length {
+                return Err(Refusal::Truncated {
+                    part: part.name.clone(),
+                    expected: part.length,
+                    found: bytes.len() as u64,
+                });
+            }
+            if crc32fast::hash(&bytes) != part.crc {
+                return Err(Refusal::Corrupt(part.name.clone()));
+            }
+            parts.insert(part.name.clone(), bytes);
+        }
+        Ok(Self {
+            iteration: manifest.iteration,
+            shape: manifest.shape,
+            parts,
+        })
+    }
+}
+
+impl Manifest {
+    fn read(path: &Path) -> Result<Self, Refusal> {
+        let text = fs::read(path.join(MANIFEST))
+            .map_err(|_| Refusal::Foreign(format!("no {MANIFEST}")))?;
+        let any: serde_json::Value = serde_json::from_slice(&text)
+            .map_err(|_| Refusal::Foreign(format!("{MANIFEST} is not JSON")))?;
+        if any["format"] != FORMAT {
+            return Err(Refusal::Foreign(format!(
+                "{MANIFEST} says format {}",
+                any["format"]
+            )));
+        }
+        // The version comes first: a later manifest may have other fields.
+        let found = any["version"]
+            .as_u64()
+            .and_then(|version| u32::try_from(version).ok());
+        match found {
+            Some(found) if found > FORMAT_VERSION => return Err(Refusal::Newer { found }),
+            Some(_) => {}
+            None => return Err(Refusal::Manifest),
+        }
+        let manifest: Self = serde_json::from_value(any).map_err(|_| Refusal::Manifest)?;
+        let names_stay_inside = manifest.parts.iter().all(|part| is_part_name(&part.name));
+        if manifest.seal != manifest.computed_seal() || !names_stay_inside {
+            return Err(Refusal::Manifest);
+        }
+        Ok(manifest)
+    }
+
+    fn computed_seal(&self) -> u32 {
+        let mut unsealed = self.clone();
+        unsealed.seal = 0;
+        crc32fast::hash(&serde_json::to_vec(&unsealed).expect("a manifest is plain data"))
+    }
+}
+
+/// The checkpoints of one run: `checkpoints/<iteration:08>/`.
+#[derive(Clone, Debug)]
+pub struct Checkpoints {
+    folder: PathBuf,
+}
+
+impl Checkpoints {
+    /// The checkpoints in a folder, which need not exist yet.
+    pub fn new(folder: PathBuf) -> Self {
+        Self { folder }
+    }
+
+    /// Where the checkpoint of an iteration is or would be.
+    pub fn path(&self, iteration: u64) -> PathBuf {
+        self.folder.join(format!("{iteration:08}"))
+    }
+
+    /// The iterations that have one, oldest first; whether it is good shows when it is opened.
+    pub fn list(&self) -> Vec<u64> {
+        let Ok(entries) = fs::read_dir(&self.folder) else {
+            return Vec::new();
+        };
+        let mut iterations: Vec<u64> = entries
+            .filter_map(Result::ok)
+            .filter_map(|entry| {
+                let name = entry.file_name().to_string_lossy().into_owned();
+                let digits = name.len() >= 8 && name.bytes().all(|byte| byte.is_ascii_digit());
+                if digits { name.parse().ok() } else { None }
+            })
+            .collect();
+        iterations.sort_unstable();
+        iterations
+    }
+
+    /// Writes a checkpoint whole or not at all; one of the same iteration is replaced.
+    ///
+    /// # Panics
+    /// If a part's name is not a plain file name.
+    pub fn write(
+        &self,
+        iteration: u64,
+        shape: &str,
+        parts: &[(&str, &[u8])],
+    ) -> Result<PathBuf, CheckpointError> {
+        let path = self.path(iteration);
+        let draft = self.folder.join(format!(".{iteration:08}.new"));
+        let written = write_draft(&draft, iteration, shape, parts).and_then(|()| {
+            // Rename cannot replace a folder with something in it. Between the two renames there
+            // is no checkpoint of this iteration, but the older ones are all there.
+            let aside = self.folder.join(format!(".{iteration:08}.old"));
+            remove_folder(&aside)?;
+            if path.exists() {
+                fs::rename(&path, &aside)?;
+            }
+            fs::rename(&draft, &path)?;
+            replace::sync_folder(&self.folder)?;
+            remove_folder(&aside)
+        });
+        match written {
+            Ok(()) => Ok(path),
+            Err(source) => {
+                // The first error is the one worth reporting; the next write clears the draft too.
+                let _ = remove_folder(&draft);
+                Err(CheckpointError::Io { path, source })
+            }
+        }
+    }
+
+    /// Opens the newest, which must be of this shape; a refusal names the newest good one.
+    pub fn open_newest(&self, shape: &str) -> Result<Checkpoint, CheckpointError> {
+        match self.list().last() {
+            Some(newest) => self.open(*newest, shape),
+            None => Err(CheckpointError::None(self.folder.clone())),
+        }
+    }
+
+    /// Opens the one of an iteration, which must be of this shape.
+    pub fn open(&self, iteration: u64, shape: &str) -> Result<Checkpoint, CheckpointError> {
+        self.inspect(iteration, shape)
+            .map_err(|reason| CheckpointError::Refused {
+                path: self.path(iteration),
+                reason,
+                previous_good: self
+                    .list()
+                    .into_iter()
+                    .rev()
+                    .filter(|other| *other < iteration)
+                    .find(|other| self.inspect(*other, shape).is_ok())
+                    .map(|other| self.path(other)),
+            })
+    }
+
+    /// Removes all but the `keep` newest, and drafts that a crash left.
+    pub fn prune(&self, keep: usize) -> Result<(), CheckpointError> {
+        let iterations = self.list();
+        let old = &iterations[..iterations.len().saturating_sub(keep)];
+        let mut unwanted: Vec<PathBuf> = old.iter().map(|at| self.path(*at)).collect();
+        if let Ok(entries) = fs::read_dir(&self.folder) {
+            let hidden = |path: &PathBuf| {
+                path.file_name()
+                    .is_some_and(|name| name.to_string_lossy().starts_with('.'))
+            };
+            unwanted.extend(
+                entries
+                    .filter_map(Result::ok)
+                    .map(|e| e.path())
+                    .filter(hidden),
+            );
+        }
+        for path in unwanted {
+            remove_folder(&path).map_err(|source| CheckpointError::Io { path, source })?;
+        }
+        Ok(())
+    }
+
+    /// Adds a file of another process (an actor's fleet) to a checkpoint that is already written.
+    /// It carries its own length and checksum, since the manifest cannot know it.
+    ///
+    /// # Panics
+    /// If the name is not a plain file name.
+    pub fn attach(&self, iteration: u64, name: &str, bytes: &[u8]) -> Result<(), CheckpointError> {
+        assert!(is_part_name(name), "{name:?} is not a plain file name");
+        let path = self.path(iteration).join(name);
+        let mut framed = Vec::with_capacity(bytes.len() + 12);
+        framed.extend_from_slice(&(bytes.len() as u64).to_le_bytes());
+        framed.extend_from_slice(&crc32fast::hash(bytes).to_le_bytes());
+        framed.extend_from_slice(bytes);
+        replace::replace_file(&path, &framed).map_err(|source| CheckpointError::Io { path, source })
+    }
+
+    /// What [`Checkpoints::attach`] added, checked; `None` when nothing of that name was.
+    pub fn attachment(
+        &self,
+        iteration: u64,
+        name: &str,
+    ) -> Result<Option<Vec<u8>>, CheckpointError> {
+        let path = self.path(iteration).join(name);
+        let framed = match fs::read(&path) {
+            Ok(framed) => framed,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(source) => return Err(CheckpointError::Io { path, source }),
+        };
+        unframe(name, &framed)
+            .map(Some)
+            .map_err(|reason| CheckpointError::Refused {
+                path: self.path(iteration),
+                reason,
+                previous_good: None,
+            })
+    }
+
+    fn inspect(&self, iteration: u64, shape: &str) -> Result<Checkpoint, Refusal> {
+        let checkpoint = Checkpoint::inspect(&self.path(iteration))?;
+        if checkpoint.shape != shape {
+            return Err(Refusal::Shape {
+                expected: shape.to_owned(),
+                found: checkpoint.shape,
+            });
+        }
+        Ok(checkpoint)
+    }
+}
+
+fn write_draft(
+    draft: &Path,
+    iteration: u64,
+    shape: &str,
+    parts: &[(&str, &[u8])],
+) -> io::Result<()> {
+    remove_folder(draft)?;
+    fs::create_dir_all(draft)?;
+    let mut manifest = Manifest {
+        format: FORMAT.to_owned(),
+        version: FORMAT_VERSION,
+        iteration,
+        shape: shape.to_owned(),
+        parts: Vec::with_capacity(parts.len()),
+        seal: 0,
+    };
+    for (name, bytes) in parts {
+        assert!(is_part_name(name), "{name:?} is not a plain file name");
+        replace::write_durably(&draft.join(name), bytes)?;
+        manifest.parts.push(Part {
+            name: (*name).to_owned(),
+            length: bytes.len() as u64,
+            crc: crc32fast::hash(bytes),
+        });
+    }
+    manifest.seal = manifest.computed_seal();
+    let text = serde_json::to_vec_pretty(&manifest)?;
+    replace::write_durably(&draft.join(MANIFEST), &text)?;
+    replace::sync_folder(draft)
+}
+
+fn unframe(name: &str, framed: &[u8]) -> Result<Vec<u8>, Refusal> {
+    let head = framed.split_first_chunk::<8>();
+    let frame = head.and_then(|(len, rest)| Some((len, rest.split_first_chunk::<4>()?)));
+    let Some((length, (crc, bytes))) = frame else {
+        return Err(Refusal::Corrupt(name.to_owned()));
+    };
+    let expected = u64::from_le_bytes(*length);
+    if bytes.len() as u64 != expected {
+        return Err(Refusal::Truncated {
+            part: name.to_owned(),
+            expected,
+            found: bytes.len() as u64,
+        });
+    }
+    if crc32fast::hash(bytes) != u32::from_le_bytes(*crc) {
+        return Err(Refusal::Corrupt(name.to_owned()));
+    }
+    Ok(bytes.to_vec())
+}
+
+fn is_part_name(name: &str) -> bool {
+    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_');
+    !name.is_empty() && !name.starts_with('.') && name != MANIFEST && name.chars().all(plain)
+}
+
+fn remove_folder(path: &Path) -> io::Result<()> {
+    match fs::remove_dir_all(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
+}
+
+fn remedy(previous_good: Option<&Path>) -> String {
+    match previous_good {
+        Some(path) => format!("the newest good one before it is {}", path.display()),
+        None => "no earlier checkpoint is good".to_owned(),
+    }
+}

@@ -1,0 +1,312 @@
+//! `metrics.jsonl`: one JSON object per iteration, appended as the run goes on.
+//!
+//! Separate because the learner writes it while others read it: the scheduler rebuilds its state
+//! from it, the command line follows it. A process that dies in the middle of a line leaves it
+//! torn; a reader passes over a torn *last* line, and a writer removes it before going on.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+use crate::replace;
+
+/// Why the metrics cannot be read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum MetricsError {
+    /// The system refused.
+    #[error("cannot use {}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        #[source]
+        source: io::Error,
+    },
+    /// A line before the last is no record: the file was edited or damaged.
+    #[error("{}, line {line}: not a record of metrics", path.display())]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// Counted from 1.
+        line: usize,
+        /// What the parser said.
+        #[source]
+        source: serde_json::Error,
+    },
+}
+
+/// The writer's end.
+#[derive(Debug)]
+pub struct Metrics {
+    file: File,
+    path: PathBuf,
+    line: Vec<u8>,
+}
+
+impl Metrics {
+    /// Opens for appending, creating the file; a torn last line is removed.
+    pub fn open(path: &Path) -> Result<Self, MetricsError> {
+        let opened = || -> io::Result<File> {
+            let mut file = OpenOptions::new()
+                .read(true)
+                .append(true)
+                .create(true)
+                .open(path)?;
+            let mut bytes = Vec::new();
+            file.read_to_end(&mut bytes)?;
+            let whole = whole_lines(&bytes);
+            if whole < bytes.len() {
+                file.set_len(whole as u64)?;
+            }
+            Ok(file)
+        };
+        Ok(Self {
+            file: opened().map_err(|source| io_error(path, source))?,
+            path: path.to_owned(),
+            line: Vec::new(),
+        })
+    }
+
+    /// Appends one record as one line, in one write: it outlives this process at once, and a power
+    /// cut from the next [`Metrics::sync`] on.
+    pub fn append(&mut self, record: &impl Serialize) -> Result<(), MetricsError> {
+        self.line.clear();
+        let written = serde_json::to_writer(&mut self.line, record)
+            .map_err(io::Error::from)
+            .and_then(|()| {
+                self.line.push(b'\n');
+                self.file.write_all(&self.line)
+            });
+        written.map_err(|source| io_error(&self.path, source))
+    }
+
+    /// Waits until everything appended is on the disk; called with each checkpoint.
+    pub fn sync(&self) -> Result<(), MetricsError> {
+        self.file
+            .sync_data()
+            .map_err(|source| io_error(&self.path, source))
+    }
+}
+
+/// Reads all records; no file is no records, and a torn last line is passed over.
+pub fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, MetricsError> {
+    let bytes = read_bytes(path)?;
+    lines(&bytes)
+        .enumerate()
+        .map(|(index, line)| {
+            serde_json::from_slice(line).map_err(|source| MetricsError::Malformed {
+                path: path.to_owned(),
+                line: index + 1,
+                source,
+            })
+        })
+        .collect()
+}
+
+/// The newest record, without parsing the others.
+pub fn newest(path: &Path) -> Result<Option<Value>, MetricsError> {
+    let bytes = read_bytes(path)?;
+    Ok(lines(&bytes)
+        .last()
+        .and_then(|line| serde_json::from_slice(line).ok()))
+}
+
+/// Drops every record after `iteration`: what a resumed run is about to write again.
+pub fn truncate_after(path: &Path, iteration: u64) -> Result<(), MetricsError> {
+    let bytes = read_bytes(path)?;
+    let mut kept = Vec::with_capacity(bytes.len());
+    for (index, line) in lines(&bytes).enumerate() {
+        let record: Value =
+            serde_json::from_slice(line).map_err(|source| MetricsError::Malformed {
+                path: path.to_owned(),
+                line: index + 1,
+                source,
+            })?;
+        if record["iteration"]
+            .as_u64()
+            .is_some_and(|at| at <= iteration)
+        {
+            kept.extend_from_slice(line);
+            kept.push(b'\n');
+        }
+    }
+    replace::replace_file(path, &kept).map_err(|source| io_error(path, source))
+}
+
+/// Follows a file that another process writes.
+#[derive(Debug)]
+pub struct Tail {
+    path: PathBuf,
+    offset: u64,
+}
+
+impl Tail {
+    /// Follows from the start of the file, which need not exist yet.
+    pub fn from_start(path: &Path) -> Self {
+        Self {
+            path: path.to_owned(),
+            offset: 0,
+        }
+    }
+
+    /// Follows from the present end: only what is written from now on.
+    pub fn from_end(path: &Path) -> Self {
+        Self {
+            path: path.to_owned(),
+            offset: std::fs::metadata(path).map_or(0, |metadata| metadata.len()),
+        }
+    }
+
+    /// The whole lines written since the last call; lines that are no records are passed over.
+    pub fn poll(&mut self) -> Result<Vec<Value>, MetricsError> {
+        let mut file = match File::open(&self.path) {
+            Ok(file) => file,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+            Err(source) => return Err(io_error(&self.path, source)),
+        };
+        let mut read = || -> io::Result<Vec<u8>> {
+            // A shorter file was truncated by a resuming learner: what remains has been seen.
+            let length = file.metadata()?.len();
+            self.offset = self.offset.min(length);
+            file.seek(SeekFrom::Start(self.offset))?;
+            let mut bytes = Vec::new();
+            file.read_to_end(&mut bytes)?;
+            Ok(bytes)
+        };
+        let bytes = read().map_err(|source| io_error(&self.path, source))?;
+        self.offset += whole_lines(&bytes) as u64;
+        Ok(lines(&bytes)
+            .filter_map(|line| serde_json::from_slice(line).ok())
+            .collect())
+    }
+}
+
+/// How many bytes belong to whole lines.
+fn whole_lines(bytes: &[u8]) -> usize {
+    bytes
+        .iter()
+        .rposition(|byte| *byte == b'\n')
+        .map_or(0, |newline| newline + 1)
+}
+
+fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+    bytes[..whole_lines(bytes)]
+        .split(|byte| *byte == b'\n')
+        .filter(|line| !line.is_empty())
+}
+
+fn read_bytes(path: &Path) -> Result<Vec<u8>, MetricsError> {
+    match std::fs::read(path) {
+        Ok(bytes) => Ok(bytes),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
+        Err(source) => Err(io_error(path, source)),
+    }
+}
+
+fn io_error(path: &Path, source: io::Error) -> MetricsError {
+    MetricsError::Io {
+        path: path.to_owned(),
+        source,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn iterations(path: &Path) -> Vec<u64> {
+        let records: Vec<Value> = read(path).unwrap();
+        records
+            .iter()
+            .map(|record| record["iteration"].as_u64().unwrap())
+            .collect()
+    }
+
+    fn three(folder: &tempfile::TempDir) -> PathBuf {
+        let path = folder.path().join("metrics.jsonl");
+        let mut metrics = Metrics::open(&path).unwrap();
+        for iteration in 1..=3 {
+            metrics
+                .append(&json!({ "iteration": iteration, "style_mean": 0.5 }))
+                .unwrap();
+        }
+        path
+    }
+
+    fn tear(path: &Path) {
+        let mut file = OpenOptions::new().append(true).open(path).unwrap();
+        file.write_all(b"{\"iteration\": 4, \"sty").unwrap();
+    }
+
+    #[test]
+    fn a_torn_last_line_is_passed_over_by_readers_and_removed_by_the_writer() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = three(&folder);
+        tear(&path);
+        assert_eq!(iterations(&path), [1, 2, 3]);
+        assert_eq!(newest(&path).unwrap().unwrap()["iteration"], 3);
+
+        Metrics::open(&path)
+            .unwrap()
+            .append(&json!({ "iteration": 4 }))
+            .unwrap();
+        assert_eq!(iterations(&path), [1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn damage_before_the_last_line_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = three(&folder);
+        tear(&path);
+        let mut file = OpenOptions::new().append(true).open(&path).unwrap();
+        file.write_all(b"\n{\"iteration\": 5}\n").unwrap();
+        let error = read::<Value>(&path).unwrap_err();
+        assert!(
+            matches!(error, MetricsError::Malformed { line: 4, .. }),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn resuming_drops_later_iterations_and_no_file_is_no_records() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = three(&folder);
+        truncate_after(&path, 2).unwrap();
+        assert_eq!(iterations(&path), [1, 2]);
+        assert_eq!(iterations(&folder.path().join("none")), [0u64; 0]);
+    }
+
+    #[test]
+    fn a_follower_sees_each_whole_line_once_across_a_truncation() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = three(&folder);
+        let mut tail = Tail::from_start(&path);
+        assert_eq!(tail.poll().unwrap().len(), 3);
+        tear(&path);
+        assert_eq!(tail.poll().unwrap().len(), 0);
+
+        truncate_after(&path, 1).unwrap();
+        assert_eq!(tail.poll().unwrap().len(), 0);
+        let mut metrics = Metrics::open(&path).unwrap();
+        metrics.append(&json!({ "iteration": 2 })).unwrap();
+        assert_eq!(tail.poll().unwrap(), [json!({ "iteration": 2 })]);
+    }
+
+    #[test]
+    fn figures_come_back_bit_for_bit() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("metrics.jsonl");
+        let figure = 0.1_f64 + 0.2;
+        Metrics::open(&path)
+            .unwrap()
+            .append(&json!({ "iteration": 1, "x": figure }))
+            .unwrap();
+        let back = newest(&path).unwrap().unwrap()["x"].as_f64().unwrap();
+        assert_eq!(back.to_bits(), figure.to_bits());
+    }
+}

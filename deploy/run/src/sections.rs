@@ -1,0 +1,224 @@
+//! The two sections that belong to the run itself: `[run]` and `[fleet]`.
+//!
+//! Separate from [`crate::config`] because that reads any section, and these are fields with
+//! meanings and defaults that learner, actors and command line share.
+
+use serde::{Deserialize, Serialize};
+
+/// When actors collect.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Mode {
+    /// Every rollout comes from the newest weights: deterministic for a seed and a set of actors.
+    #[default]
+    Lockstep,
+    /// Actors collect with the last weights while the learner trains.
+    Overlapped,
+}
+
+/// `[run]`: how long, how often, how patient.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RunConfig {
+    /// The seed from which every process derives its own. A TOML integer: at most 2⁶³ − 1.
+    pub seed: u64,
+    /// When actors collect.
+    pub mode: Mode,
+    /// The iteration at which the run is complete, counted from its very first; 0 = no limit.
+    /// Table II: 20,000.
+    pub iterations: u64,
+    /// Minutes after which this launch ends in order; 0 = no limit.
+    pub minutes: f64,
+    /// Iterations between checkpoints; one more is written whenever the learner stops.
+    pub checkpoint_every: u64,
+    /// How many of the newest checkpoints stay on the disk.
+    pub keep_checkpoints: usize,
+    /// How long processes wait for one another.
+    pub deadlines: Deadlines,
+}
+
+/// `[run.deadlines]`, all in seconds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Deadlines {
+    /// The learner waits this long for an actor's rollout before it goes on without that actor.
+    pub rollout_seconds: f64,
+    /// The learner, in lock-step, waits this long for the scheduler's answer before it goes on
+    /// with the last directive.
+    pub directive_seconds: f64,
+    /// An actor waits this long for room in a full stream before it drops a rollout and counts it.
+    pub send_seconds: f64,
+    /// After the order to end, processes have this long before they are killed.
+    pub stop_seconds: f64,
+}
+
+/// `[fleet]`: how much is simulated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct FleetConfig {
+    /// Environments of the whole group, shared evenly among the actors it starts with.
+    pub environments: usize,
+    /// Control steps per environment and rollout (the paper: 24).
+    pub steps: usize,
+    /// Actor processes; 0 = one per core, written out when the run is made.
+    pub actors: usize,
+}
+
+impl Default for RunConfig {
+    fn default() -> Self {
+        Self {
+            seed: 1,
+            mode: Mode::default(),
+            iterations: 20_000,
+            minutes: 0.0,
+            checkpoint_every: 50,
+            keep_checkpoints: 5,
+            deadlines: Deadlines::default(),
+        }
+    }
+}
+
+impl Default for Deadlines {
+    fn default() -> Self {
+        Self {
+            rollout_seconds: 30.0,
+            directive_seconds: 2.0,
+            send_seconds: 10.0,
+            stop_seconds: 30.0,
+        }
+    }
+}
+
+impl Default for FleetConfig {
+    fn default() -> Self {
+        Self {
+            environments: 256,
+            steps: 32,
+            actors: 0,
+        }
+    }
+}
+
+impl RunConfig {
+    /// Refuses values out of range, naming field, value and remedy.
+    pub fn validate(&self) -> Result<(), String> {
+        if i64::try_from(self.seed).is_err() {
+            return Err(format!(
+                "seed = {} is too large; use at most 2^63 - 1",
+                self.seed
+            ));
+        }
+        if !(self.minutes.is_finite() && self.minutes >= 0.0) {
+            let given = self.minutes;
+            return Err(format!(
+                "minutes = {given} is not a time; use 0 for no limit, or more"
+            ));
+        }
+        if self.checkpoint_every == 0 {
+            return Err("checkpoint_every = 0 is out of range; use 1 or more".to_owned());
+        }
+        if self.keep_checkpoints < 2 {
+            // With one, a checkpoint damaged on the disk would be the only one.
+            let given = self.keep_checkpoints;
+            return Err(format!(
+                "keep_checkpoints = {given} is out of range; use 2 or more"
+            ));
+        }
+        let deadlines = &self.deadlines;
+        for (name, seconds) in [
+            ("rollout_seconds", deadlines.rollout_seconds),
+            ("directive_seconds", deadlines.directive_seconds),
+            ("send_seconds", deadlines.send_seconds),
+            ("stop_seconds", deadlines.stop_seconds),
+        ] {
+            if !(seconds > 0.0 && seconds <= 86_400.0) {
+                return Err(format!(
+                    "deadlines.{name} = {seconds} is out of range; use more than 0 and at most a day (86400)"
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl FleetConfig {
+    /// Refuses values out of range, naming field, value and remedy.
+    pub fn validate(&self) -> Result<(), String> {
+        for (name, value, most) in [
+            ("environments", self.environments, 1 << 20),
+            ("steps", self.steps, 1 << 12),
+        ] {
+            if value == 0 || value > most {
+                return Err(format!("{name} = {value} is out of range; use 1 to {most}"));
+            }
+        }
+        // The streams are opened for 64 publishers; more could never join.
+        if self.actors > 64 {
+            let given = self.actors;
+            return Err(format!("actors = {given} is out of range; use at most 64"));
+        }
+        if self.actors > self.environments {
+            return Err(format!(
+                "actors = {} is more than environments = {}; each actor simulates at least one",
+                self.actors, self.environments
+            ));
+        }
+        Ok(())
+    }
+
+    /// Environments of one actor: an even share, rounded up so that all actors send one shape.
+    pub fn environments_per_actor(&self) -> usize {
+        self.environments.div_ceil(self.actors.max(1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_defaults_are_in_range() {
+        assert_eq!(RunConfig::default().validate(), Ok(()));
+        assert_eq!(FleetConfig::default().validate(), Ok(()));
+    }
+
+    #[test]
+    fn refusals_name_field_value_and_remedy() {
+        let run = RunConfig {
+            keep_checkpoints: 1,
+            ..RunConfig::default()
+        };
+        let problem = run.validate().unwrap_err();
+        assert!(problem.contains("keep_checkpoints = 1") && problem.contains("2 or more"));
+
+        let mut run = RunConfig::default();
+        run.deadlines.stop_seconds = f64::NAN;
+        assert!(
+            run.validate()
+                .unwrap_err()
+                .contains("deadlines.stop_seconds = NaN")
+        );
+
+        let fleet = FleetConfig {
+            environments: 2,
+            actors: 3,
+            ..FleetConfig::default()
+        };
+        assert!(fleet.validate().unwrap_err().contains("actors = 3"));
+    }
+
+    #[test]
+    fn shares_are_even_and_rounded_up() {
+        let share = |environments, actors| {
+            let fleet = FleetConfig {
+                environments,
+                steps: 1,
+                actors,
+            };
+            fleet.environments_per_actor()
+        };
+        assert_eq!(share(256, 2), 128);
+        assert_eq!(share(256, 3), 86); // 85⅓, and 3 × 86 = 258 ≥ 256
+        assert_eq!(share(256, 0), 256); // not resolved yet: as one actor
+    }
+}

@@ -1,0 +1,200 @@
+//! Checkpoints as a run meets them: written, damaged, replaced, pruned.
+
+use std::fs;
+use std::path::PathBuf;
+
+use run::checkpoint::{CheckpointError, FORMAT_VERSION, Refusal};
+use run::{Checkpoint, Checkpoints};
+
+const SHAPE: &str = "policy 82-8-23";
+
+/// Two checkpoints, of iterations 10 and 20, of two parts each.
+fn two() -> (tempfile::TempDir, Checkpoints) {
+    let folder = tempfile::tempdir().unwrap();
+    let checkpoints = Checkpoints::new(folder.path().join("checkpoints"));
+    for iteration in [10, 20] {
+        let parts: [(&str, &[u8]); 2] = [("actor.bin", b"weights"), ("optimizer.bin", &[7; 100])];
+        checkpoints.write(iteration, SHAPE, &parts).unwrap();
+    }
+    (folder, checkpoints)
+}
+
+/// Why the newest is refused, and the good one named instead.
+fn refusal(checkpoints: &Checkpoints, shape: &str) -> (Refusal, Option<PathBuf>) {
+    match checkpoints.open_newest(shape).unwrap_err() {
+        CheckpointError::Refused {
+            reason,
+            previous_good,
+            ..
+        } => (reason, previous_good),
+        other => panic!("{other}"),
+    }
+}
+
+#[test]
+fn what_was_written_comes_back() {
+    let (_folder, checkpoints) = two();
+    assert_eq!(checkpoints.list(), [10, 20]);
+    let newest = checkpoints.open_newest(SHAPE).unwrap();
+    assert_eq!(newest.iteration, 20);
+    assert_eq!(newest.part("actor.bin"), Some(b"weights".as_slice()));
+    assert_eq!(newest.part("optimizer.bin"), Some([7_u8; 100].as_slice()));
+    assert_eq!(newest.part("critic.bin"), None);
+}
+
+#[test]
+fn a_truncated_part_is_refused_and_the_previous_good_one_named() {
+    let (_folder, checkpoints) = two();
+    fs::write(checkpoints.path(20).join("optimizer.bin"), [7; 99]).unwrap();
+    let (reason, previous_good) = refusal(&checkpoints, SHAPE);
+    let expected = Refusal::Truncated {
+        part: "optimizer.bin".to_owned(),
+        expected: 100,
+        found: 99,
+    };
+    assert_eq!(reason, expected);
+    assert_eq!(previous_good, Some(checkpoints.path(10)));
+    let words = checkpoints.open_newest(SHAPE).unwrap_err().to_string();
+    assert!(
+        words.contains("99 bytes of 100") && words.contains("00000010"),
+        "{words}"
+    );
+}
+
+#[test]
+fn one_flipped_bit_is_refused() {
+    let (_folder, checkpoints) = two();
+    let mut bytes = vec![7; 100];
+    bytes[50] ^= 1;
+    fs::write(checkpoints.path(20).join("optimizer.bin"), bytes).unwrap();
+    assert_eq!(
+        refusal(&checkpoints, SHAPE).0,
+        Refusal::Corrupt("optimizer.bin".to_owned())
+    );
+}
+
+#[test]
+fn a_missing_part_is_refused_and_with_both_damaged_none_is_named() {
+    let (_folder, checkpoints) = two();
+    for iteration in [10, 20] {
+        fs::remove_file(checkpoints.path(iteration).join("actor.bin")).unwrap();
+    }
+    let (reason, previous_good) = refusal(&checkpoints, SHAPE);
+    assert_eq!(reason, Refusal::Missing("actor.bin".to_owned()));
+    assert_eq!(previous_good, None);
+}
+
+#[test]
+fn another_shape_is_refused_with_both_named() {
+    let (_folder, checkpoints) = two();
+    let (reason, previous_good) = refusal(&checkpoints, "policy 82-16-23");
+    let words = reason.to_string();
+    assert!(
+        words.contains("82-8-23") && words.contains("82-16-23"),
+        "{words}"
+    );
+    assert_eq!(previous_good, None);
+}
+
+#[test]
+fn a_newer_format_a_foreign_folder_and_an_edited_manifest_are_refused() {
+    let (_folder, checkpoints) = two();
+    let manifest = checkpoints.path(20).join("manifest.json");
+    let text = fs::read_to_string(&manifest).unwrap();
+
+    let newer = FORMAT_VERSION + 1;
+    let newer_text = text.replace("\"version\": 1", &format!("\"version\": {newer}"));
+    assert_ne!(newer_text, text);
+    fs::write(&manifest, newer_text).unwrap();
+    assert_eq!(
+        refusal(&checkpoints, SHAPE).0,
+        Refusal::Newer { found: newer }
+    );
+
+    fs::write(
+        &manifest,
+        text.replace("\"iteration\": 20", "\"iteration\": 21"),
+    )
+    .unwrap();
+    assert_eq!(refusal(&checkpoints, SHAPE).0, Refusal::Manifest);
+
+    fs::write(&manifest, "{\"format\": \"something else\"}").unwrap();
+    assert!(matches!(
+        refusal(&checkpoints, SHAPE).0,
+        Refusal::Foreign(_)
+    ));
+    fs::remove_file(&manifest).unwrap();
+    assert!(matches!(
+        refusal(&checkpoints, SHAPE).0,
+        Refusal::Foreign(_)
+    ));
+}
+
+#[test]
+fn a_manifest_cannot_lead_out_of_its_folder() {
+    let (_folder, checkpoints) = two();
+    let manifest = checkpoints.path(20).join("manifest.json");
+    let text = fs::read_to_string(&manifest).unwrap();
+    fs::write(
+        &manifest,
+        text.replace("actor.bin", "../00000010/actor.bin"),
+    )
+    .unwrap();
+    assert_eq!(refusal(&checkpoints, SHAPE).0, Refusal::Manifest);
+}
+
+#[test]
+fn a_draft_left_by_a_crash_is_no_checkpoint_and_is_cleared() {
+    let (folder, checkpoints) = two();
+    let draft = folder.path().join("checkpoints/.00000030.new");
+    fs::create_dir(&draft).unwrap();
+    fs::write(draft.join("actor.bin"), b"half").unwrap();
+    assert_eq!(checkpoints.list(), [10, 20]);
+    checkpoints.prune(2).unwrap();
+    assert!(!draft.exists());
+    assert_eq!(checkpoints.list(), [10, 20]);
+}
+
+#[test]
+fn the_same_iteration_is_replaced_and_old_ones_are_pruned() {
+    let (_folder, checkpoints) = two();
+    checkpoints
+        .write(20, SHAPE, &[("actor.bin", b"newer")])
+        .unwrap();
+    checkpoints.prune(1).unwrap();
+    assert_eq!(checkpoints.list(), [20]);
+    let checkpoint = Checkpoint::open(&checkpoints.path(20)).unwrap();
+    assert_eq!(checkpoint.part("actor.bin"), Some(b"newer".as_slice()));
+    assert_eq!(checkpoint.part("optimizer.bin"), None);
+}
+
+#[test]
+fn an_attachment_is_checked_by_itself() {
+    let (_folder, checkpoints) = two();
+    assert_eq!(checkpoints.attachment(20, "fleet-0.bin").unwrap(), None);
+    checkpoints.attach(20, "fleet-0.bin", b"worlds").unwrap();
+    let back = checkpoints.attachment(20, "fleet-0.bin").unwrap();
+    assert_eq!(back.as_deref(), Some(b"worlds".as_slice()));
+    checkpoints.open_newest(SHAPE).unwrap();
+
+    let file = checkpoints.path(20).join("fleet-0.bin");
+    let mut bytes = fs::read(&file).unwrap();
+    bytes.pop();
+    fs::write(&file, bytes).unwrap();
+    let words = checkpoints
+        .attachment(20, "fleet-0.bin")
+        .unwrap_err()
+        .to_string();
+    assert!(words.contains("5 bytes of 6"), "{words}");
+}
+
+#[test]
+fn an_unwritable_folder_is_an_error_and_leaves_the_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("checkpoints");
+    fs::write(&path, b"a file where the folder should be").unwrap();
+    let error = Checkpoints::new(path)
+        .write(1, SHAPE, &[("a", b"b")])
+        .unwrap_err();
+    assert!(matches!(error, CheckpointError::Io { .. }), "{error}");
+}

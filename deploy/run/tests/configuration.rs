@@ -1,0 +1,229 @@
+//! Configuration as a user meets it: presets, `--set`, and what an error says.
+
+use serde::{Deserialize, Serialize};
+
+use run::{Config, ConfigError, FleetConfig, Mode, RunConfig};
+
+/// A section with what real ones have: a number, a choice, a table, a list, an option.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct Walk {
+    speed: f32,
+    steps: usize,
+    method: Method,
+    limit: Limit,
+    clips: Vec<Limit>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    label: Option<String>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Method {
+    Plain,
+    Amp { style_weight: f32 },
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct Limit {
+    lower: f32,
+    upper: f32,
+}
+
+impl Default for Walk {
+    fn default() -> Self {
+        Self {
+            speed: 0.95,
+            steps: 24,
+            method: Method::Plain,
+            limit: Limit::default(),
+            clips: Vec::new(),
+            label: None,
+        }
+    }
+}
+
+impl Walk {
+    fn validate(&self) -> Result<(), String> {
+        if self.speed > 2.0 {
+            return Err(format!(
+                "speed = {} is out of range; use at most 2",
+                self.speed
+            ));
+        }
+        Ok(())
+    }
+}
+
+fn config(text: &str) -> Config {
+    Config::parse(text, "preset walk").unwrap()
+}
+
+fn complaint(config: &Config) -> String {
+    config.section::<Walk>("walk").unwrap_err().to_string()
+}
+
+#[test]
+fn nothing_given_is_the_defaults() {
+    assert_eq!(config("").section::<Walk>("walk").unwrap(), Walk::default());
+}
+
+#[test]
+fn a_preset_changes_only_what_it_mentions_and_set_wins() {
+    let mut config = config("[walk]\nsteps = 8\nlimit = { lower = 0.1 }");
+    config.merge(Config::parse("[walk.limit]\nupper = 0.9", "b.toml").unwrap());
+    config.set("walk.speed=1.5").unwrap();
+    config.set("walk.method.amp.style_weight=0.7").unwrap();
+    let walk: Walk = config.section("walk").unwrap();
+    let expected = Walk {
+        speed: 1.5,
+        steps: 8,
+        method: Method::Amp { style_weight: 0.7 },
+        limit: Limit {
+            lower: 0.1,
+            upper: 0.9,
+        },
+        ..Walk::default()
+    };
+    assert_eq!(walk, expected);
+}
+
+#[test]
+fn an_unknown_key_names_its_origin_its_value_and_the_closest() {
+    let message = complaint(&config("[walk]\nsped = 2"));
+    assert_eq!(
+        message,
+        "preset walk: unknown key `sped` in [walk] (value 2); did you mean `speed`?"
+    );
+}
+
+#[test]
+fn an_unknown_key_inside_a_table_and_inside_a_list_is_found() {
+    let message = complaint(&config("[walk.limit]\nuper = 2"));
+    assert!(
+        message.contains("`limit.uper`") && message.contains("`upper`"),
+        "{message}"
+    );
+    let message = complaint(&config("[walk]\nclips = [{}, { lowr = 3 }]"));
+    assert!(message.contains("`clips[1].lowr`"), "{message}");
+    assert!(
+        message.contains("(value 3)") && message.contains("`lower`"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_wrong_type_names_the_assignment_that_gave_it() {
+    let mut config = config("[walk]\nsteps = 8");
+    config.set("walk.steps=many").unwrap();
+    let message = complaint(&config);
+    assert!(
+        message.starts_with("--set walk.steps=many: `steps` = \"many\""),
+        "{message}"
+    );
+    assert!(message.contains("expected usize"), "{message}");
+}
+
+#[test]
+fn a_negative_count_is_refused() {
+    let message = complaint(&config("[walk]\nsteps = -8"));
+    assert!(message.contains("`steps` = -8"), "{message}");
+}
+
+#[test]
+fn an_unknown_choice_lists_the_choices() {
+    let message = complaint(&config("[walk]\nmethod = \"plan\""));
+    assert!(
+        message.contains("unknown choice `plan`; did you mean `plain`?"),
+        "{message}"
+    );
+}
+
+#[test]
+fn an_unknown_section_is_answered_with_the_closest() {
+    let error = config("[wlak]\nsteps = 1")
+        .check_sections(&["walk", "run"])
+        .unwrap_err();
+    let message = error.to_string();
+    assert!(
+        message.contains("[wlak]") && message.contains("`walk`"),
+        "{message}"
+    );
+    assert!(config("walk = 3").check_sections(&["walk"]).is_err());
+    assert!(config("[walk]").check_sections(&["walk"]).is_ok());
+}
+
+#[test]
+fn an_owners_refusal_names_where_the_key_was_given() {
+    let mut config = config("[walk]\nsteps = 8");
+    config.set("walk.speed=3").unwrap();
+    let error = config.checked("walk", Walk::validate).unwrap_err();
+    assert!(matches!(error, ConfigError::Refused { .. }));
+    let message = error.to_string();
+    assert!(
+        message.starts_with("--set walk.speed=3: [walk] speed = 3"),
+        "{message}"
+    );
+}
+
+#[test]
+fn bad_toml_names_file_and_line() {
+    let error = Config::parse("[walk]\nspeed = = 1", "my.toml")
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("my.toml") && error.contains("line 2"),
+        "{error}"
+    );
+}
+
+#[test]
+fn the_resolved_file_reads_back_as_the_same_values() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("config.toml");
+    let mut given =
+        config("[walk]\nclips = [{ upper = 0.3 }]\nmethod = { amp = { style_weight = 0.1 } }");
+    let walk: Walk = given.section("walk").unwrap();
+    given.resolve("walk", &walk);
+    given.resolve("run", &RunConfig::default());
+    given.resolve("fleet", &FleetConfig::default());
+    given.write(&path, "Made by a test.").unwrap();
+
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(text.starts_with("# Made by a test.\n"), "{text}");
+    assert!(
+        text.contains("speed = 0.95\n"),
+        "an f32 keeps its own digits: {text}"
+    );
+    let back = Config::read(&path).unwrap();
+    assert_eq!(back.section::<Walk>("walk").unwrap(), walk);
+    assert_eq!(
+        back.section::<RunConfig>("run").unwrap(),
+        RunConfig::default()
+    );
+    assert_eq!(
+        back.section::<FleetConfig>("fleet").unwrap(),
+        FleetConfig::default()
+    );
+}
+
+#[test]
+fn a_key_without_a_section_belongs_to_the_run() {
+    let mut config = config("");
+    config.set("seed=7").unwrap();
+    config.set("mode=overlapped").unwrap();
+    config.put("run.iterations", 50, "--iterations 50");
+    let run: RunConfig = config.section("run").unwrap();
+    assert_eq!(
+        (run.seed, run.mode, run.iterations),
+        (7, Mode::Overlapped, 50)
+    );
+    config.set("sed=7").unwrap();
+    let message = config.section::<RunConfig>("run").unwrap_err().to_string();
+    assert!(
+        message.starts_with("--set sed=7: unknown key `sed` in [run]"),
+        "{message}"
+    );
+    assert!(message.contains("`seed`"), "{message}");
+}
