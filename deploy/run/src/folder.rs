@@ -163,9 +163,9 @@ impl Folder {
         }
     }
 
-    /// Takes the free role `actor-<index>` with the lowest index, and says which.
-    pub fn lock_free_actor(&self) -> Result<(u32, Lock), FolderError> {
-        for index in 0.. {
+    /// Takes the free role `actor-<index>` with the lowest index from `first` on, and says which.
+    pub fn lock_free_actor(&self, first: u32) -> Result<(u32, Lock), FolderError> {
+        for index in first.. {
             if let Some(lock) = self.try_lock(&format!("actor-{index}"))? {
                 return Ok((index, lock));
             }
@@ -301,12 +301,13 @@ mod tests {
     #[test]
     fn actors_get_the_lowest_free_index() {
         let (_runs, folder) = folder();
-        let (zero, _held) = folder.lock_free_actor().unwrap();
-        let (one, freed) = folder.lock_free_actor().unwrap();
-        let (two, _also_held) = folder.lock_free_actor().unwrap();
+        let (zero, _held) = folder.lock_free_actor(0).unwrap();
+        let (one, freed) = folder.lock_free_actor(0).unwrap();
+        let (two, _also_held) = folder.lock_free_actor(0).unwrap();
         assert_eq!((zero, one, two), (0, 1, 2));
         drop(freed);
-        assert_eq!(folder.lock_free_actor().unwrap().0, 1);
+        assert_eq!(folder.lock_free_actor(2).unwrap().0, 3);
+        assert_eq!(folder.lock_free_actor(0).unwrap().0, 1);
     }
 
     #[test]

@@ -19,11 +19,10 @@ pub mod config;
 pub mod folder;
 pub mod log;
 pub mod metrics;
+pub mod nearest;
 pub mod sections;
-pub mod supervision;
 
 mod assignment;
-mod nearest;
 mod replace;
 
 pub use checkpoint::{Checkpoint, CheckpointError, Checkpoints};

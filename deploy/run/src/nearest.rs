@@ -3,7 +3,7 @@
 //! Separate because keys, sections, presets and runs are all misspelt the same way.
 
 /// The remedy for an unknown `name`: the closest of `known`, else all of them.
-pub(crate) fn remedy(name: &str, known: &[&str]) -> String {
+pub fn remedy(name: &str, known: &[&str]) -> String {
     let close = nearest(name, known);
     if close.is_empty() {
         format!("known: {}", known.join(", "))
