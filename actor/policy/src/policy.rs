@@ -1,0 +1,199 @@
+//! The policy: normalise, evaluate the layers, and explore.
+
+use pulp::Arch;
+use rand::Rng;
+
+use crate::gaussian::Gaussian;
+use crate::kernel::{Activation, Rows, TILE_ROWS};
+use crate::layer::Layer;
+use crate::shape::{INVERSE_DEVIATION, MEAN, SIGMA};
+use crate::{INPUTS, OUTPUTS, PolicyError, Shape};
+
+/// Normalised observations are cut to ± this.
+pub const CLIP: f32 = 5.0;
+
+/// Rows that go through all layers together: their activations stay in the second-level cache.
+const BLOCK: usize = 8 * TILE_ROWS;
+
+/// A policy network with room for its intermediate results.
+#[derive(Clone, Debug)]
+pub struct Policy {
+    /// Vectors of this machine.
+    arch: Arch,
+    shape: Shape,
+    mean: [f32; INPUTS],
+    inverse_deviation: [f32; INPUTS],
+    gaussian: Gaussian,
+    layers: Vec<Layer>,
+    /// Results of the layer before and of the layer at work, for `BLOCK` rows.
+    buffers: [Vec<f32>; 2],
+}
+
+impl Policy {
+    /// A policy whose weights are zero: until some are loaded its mean action is zero, and its σ is one.
+    ///
+    /// # Panics
+    /// If a hidden layer has no units.
+    pub fn new(shape: Shape) -> Self {
+        assert!(
+            !shape.hidden.contains(&0),
+            "a hidden layer without units passes nothing on: {:?}",
+            shape.hidden
+        );
+        let layers: Vec<Layer> = shape
+            .layers()
+            .enumerate()
+            .map(|(index, place)| {
+                let activation = if index < shape.hidden.len() {
+                    Activation::Elu
+                } else {
+                    Activation::None
+                };
+                Layer::new(place.inputs, place.outputs, activation)
+            })
+            .collect();
+        let widest = layers
+            .iter()
+            .map(Layer::padded_outputs)
+            .fold(INPUTS, usize::max);
+        Self {
+            arch: Arch::new(),
+            mean: [0.0; INPUTS],
+            inverse_deviation: [1.0; INPUTS],
+            gaussian: Gaussian::new([1.0; OUTPUTS]),
+            layers,
+            buffers: [vec![0.0; BLOCK * widest], vec![0.0; BLOCK * widest]],
+            shape,
+        }
+    }
+
+    /// Its shape.
+    pub fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// Its exploration.
+    pub fn gaussian(&self) -> &Gaussian {
+        &self.gaussian
+    }
+
+    /// Takes weights in the layout of [`Shape`]; refused weights leave those before in place.
+    pub fn load(&mut self, flat: &[f32]) -> Result<(), PolicyError> {
+        let expected = self.shape.len();
+        if flat.len() != expected {
+            return Err(PolicyError::Length {
+                expected,
+                found: flat.len(),
+            });
+        }
+        if let Some(index) = flat.iter().position(|value| !value.is_finite()) {
+            return Err(PolicyError::NotFinite {
+                index,
+                value: flat[index],
+            });
+        }
+        let sigma: [f32; OUTPUTS] = std::array::from_fn(|action| flat[SIGMA.start + action]);
+        if let Some(action) = sigma.iter().position(|&sigma| sigma <= 0.0) {
+            return Err(PolicyError::Deviation {
+                action,
+                value: sigma[action],
+            });
+        }
+        self.mean.copy_from_slice(&flat[MEAN]);
+        self.inverse_deviation
+            .copy_from_slice(&flat[INVERSE_DEVIATION]);
+        self.gaussian = Gaussian::new(sigma);
+        for (layer, place) in self.layers.iter_mut().zip(self.shape.layers()) {
+            layer.load(&flat[place.weights], &flat[place.bias]);
+        }
+        Ok(())
+    }
+
+    /// Mean actions `[n][23]` of observations `[n][82]`: what the policy does without exploring.
+    ///
+    /// Does not allocate. A NaN in an observation makes that row's action NaN, and no other.
+    ///
+    /// # Panics
+    /// If a slice does not hold exactly `n` rows.
+    pub fn means(&mut self, observations: &[f32], n: usize, out: &mut [f32]) {
+        assert_eq!(observations.len(), n * INPUTS, "observations of {n} rows");
+        assert_eq!(out.len(), n * OUTPUTS, "actions of {n} rows");
+        for (observations, out) in observations
+            .chunks(BLOCK * INPUTS)
+            .zip(out.chunks_mut(BLOCK * OUTPUTS))
+        {
+            self.block(observations, out);
+        }
+    }
+
+    /// Draws actions around the means, with the log-density of each: all in `[n][23]`, `log_probs` in `[n]`.
+    ///
+    /// Does not allocate.
+    ///
+    /// # Panics
+    /// If a slice does not hold exactly `n` rows.
+    pub fn sample<R: Rng + ?Sized>(
+        &mut self,
+        observations: &[f32],
+        n: usize,
+        rng: &mut R,
+        actions: &mut [f32],
+        means: &mut [f32],
+        log_probs: &mut [f32],
+    ) {
+        assert_eq!(actions.len(), n * OUTPUTS, "actions of {n} rows");
+        assert_eq!(log_probs.len(), n, "log-densities of {n} rows");
+        self.means(observations, n, means);
+        let rows = means
+            .chunks_exact(OUTPUTS)
+            .zip(actions.chunks_exact_mut(OUTPUTS));
+        for ((mean, action), log_prob) in rows.zip(log_probs) {
+            self.gaussian.sample(mean, rng, action);
+            *log_prob = self.gaussian.log_density(action, mean);
+        }
+    }
+
+    /// Up to `BLOCK` rows.
+    fn block(&mut self, observations: &[f32], out: &mut [f32]) {
+        let count = observations.len() / INPUTS;
+        let [mut from, mut to] = self.buffers.each_mut();
+        normalise(observations, &self.mean, &self.inverse_deviation, from);
+        let mut stride = INPUTS;
+        for layer in &self.layers {
+            layer.forward(
+                self.arch,
+                Rows {
+                    values: from,
+                    stride,
+                },
+                count,
+                to,
+            );
+            stride = layer.padded_outputs();
+            std::mem::swap(&mut from, &mut to);
+        }
+        for (out, result) in out.chunks_exact_mut(OUTPUTS).zip(from.chunks_exact(stride)) {
+            out.copy_from_slice(&result[..OUTPUTS]);
+        }
+    }
+}
+
+/// clip((o − mean)·inverse deviation, ± [`CLIP`]) for rows `[n][82]`.
+fn normalise(
+    observations: &[f32],
+    mean: &[f32; INPUTS],
+    inverse_deviation: &[f32; INPUTS],
+    out: &mut [f32],
+) {
+    for (row, out) in observations
+        .chunks_exact(INPUTS)
+        .zip(out.chunks_exact_mut(INPUTS))
+    {
+        for i in 0..INPUTS {
+            out[i] = ((row[i] - mean[i]) * inverse_deviation[i]).clamp(-CLIP, CLIP);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

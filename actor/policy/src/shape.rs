@@ -1,0 +1,109 @@
+//! The flat layout of a policy's weights, as the learner exports it and the processes ship it.
+//!
+//! One vector of f32, in this order: observation mean `[82]`, observation inverse standard deviation `[82]`, exploration
+//! standard deviation per action `[23]`, then for each layer its weights `[in][out]` row by row and its bias `[out]`.
+
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+
+/// Numbers in an observation (section III-A of the paper).
+pub const INPUTS: usize = 82;
+
+/// Numbers in an action, one target per joint.
+pub const OUTPUTS: usize = 23;
+
+/// Widths of the hidden layers; inputs and outputs are fixed.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Shape {
+    /// Units of each hidden layer, from the observation on. Empty makes a linear policy.
+    pub hidden: Vec<usize>,
+}
+
+/// Where one layer's numbers are in the flat vector.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct LayerPlace {
+    pub(crate) inputs: usize,
+    pub(crate) outputs: usize,
+    pub(crate) weights: Range<usize>,
+    pub(crate) bias: Range<usize>,
+}
+
+/// Observation means.
+pub(crate) const MEAN: Range<usize> = 0..INPUTS;
+/// Observation inverse standard deviations.
+pub(crate) const INVERSE_DEVIATION: Range<usize> = INPUTS..2 * INPUTS;
+/// Exploration standard deviations.
+pub(crate) const SIGMA: Range<usize> = 2 * INPUTS..2 * INPUTS + OUTPUTS;
+
+impl Shape {
+    /// A policy with these hidden layers.
+    pub fn new(hidden: &[usize]) -> Self {
+        Self {
+            hidden: hidden.to_vec(),
+        }
+    }
+
+    /// Length of the flat vector.
+    pub fn len(&self) -> usize {
+        self.layers()
+            .last()
+            .map_or(SIGMA.end, |layer| layer.bias.end)
+    }
+
+    /// Never: even a linear policy has weights.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// Every layer's place, from the observation on.
+    pub(crate) fn layers(&self) -> impl Iterator<Item = LayerPlace> + '_ {
+        let outputs = self.hidden.iter().copied().chain([OUTPUTS]);
+        outputs.scan((SIGMA.end, INPUTS), |(start, inputs), outputs| {
+            let weights = *start..*start + *inputs * outputs;
+            let bias = weights.end..weights.end + outputs;
+            let place = LayerPlace {
+                inputs: *inputs,
+                outputs,
+                weights,
+                bias: bias.clone(),
+            };
+            (*start, *inputs) = (bias.end, outputs);
+            Some(place)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_vector_is_the_sum_of_its_parts() {
+        // 82 + 82 + 23 = 187; a linear policy adds 82·23 + 23 = 1909
+        assert_eq!(Shape::new(&[]).len(), 187 + 1909);
+        // 82·4 + 4 = 332, 4·23 + 23 = 115
+        assert_eq!(Shape::new(&[4]).len(), 187 + 332 + 115);
+    }
+
+    #[test]
+    fn layers_follow_each_other_without_gaps() {
+        let layers: Vec<_> = Shape::new(&[4, 3]).layers().collect();
+        assert_eq!(
+            layers
+                .iter()
+                .map(|l| (l.inputs, l.outputs))
+                .collect::<Vec<_>>(),
+            [(82, 4), (4, 3), (3, 23)]
+        );
+        assert_eq!(
+            (layers[0].weights.clone(), layers[0].bias.clone()),
+            (187..515, 515..519)
+        );
+        assert_eq!(
+            (layers[1].weights.clone(), layers[1].bias.clone()),
+            (519..531, 531..534)
+        );
+        assert_eq!(layers[2].weights.start, 534);
+    }
+}
