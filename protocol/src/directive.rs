@@ -1,0 +1,349 @@
+//! Directives: the scheduler's newest decision, as plain numbers.
+//!
+//! Separate because a Rust enum must not cross shared memory: another process could write a number
+//! that names no variant. What arrives is checked and then becomes the types of crate `ampco`.
+
+use std::time::{Duration, Instant};
+
+use ampco::{Decision, Granularity, Rule};
+use iceoryx2::prelude::ZeroCopySend;
+
+use crate::port::{PortError, Publisher, Subscriber, Wake};
+use crate::presence::Node;
+use crate::stream::Directives;
+
+const FIXED: u32 = 0;
+const GUIDED: u32 = 1;
+const ADAMIMIC: u32 = 2;
+const BOUNDED: u32 = 3;
+
+/// A decision on its way to the learner. NaN stands for a number that does not exist yet.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, ZeroCopySend)]
+#[type_name("ampco.Directive")]
+pub struct Directive {
+    /// Incarnation of the scheduler; filled by [`DirectivePublisher::send`].
+    pub scheduler: u64,
+    /// Directives of this scheduler before this one; filled by [`DirectivePublisher::send`].
+    pub sequence: u64,
+    /// Incarnation of the learner whose report it answers.
+    pub learner: u64,
+    /// Iteration of the last report that it answers.
+    pub iteration: u64,
+    /// Iteration whose report brought phase II; `u64::MAX` in phase I.
+    pub switched_at: u64,
+    /// 1 or 2.
+    pub phase: u32,
+    /// Which rule; read it with [`Self::rule`].
+    pub rule: u32,
+    /// First parameter of the rule: style weight, ceiling, or lower bound.
+    pub first: f32,
+    /// Second parameter of the rule: upper bound.
+    pub second: f32,
+    /// Whose rewards the rule is evaluated on; read it with [`Self::granularity`].
+    pub granularity: u32,
+    /// 1 when the switch is doubtful, see `ampco::Decision::warning`.
+    pub warned: u32,
+    /// μ lower of Eq. 13.
+    pub lower: f64,
+    /// μ upper of Eq. 13.
+    pub upper: f64,
+    /// β.
+    pub breakout_rate: f64,
+    /// 1 − p, below which β means convergence.
+    pub threshold: f64,
+    /// Slope of the reward window, in reward per iteration.
+    pub trend: f64,
+}
+
+/// Why a directive cannot be followed.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum RuleError {
+    /// No rule has this number.
+    #[error("directive names rule {0}, known are 0 to 3")]
+    UnknownRule(u32),
+    /// No granularity has this number.
+    #[error("directive names granularity {0}, known are 0 and 1")]
+    UnknownGranularity(u32),
+    /// The rule's parameters make no sense.
+    #[error("directive carries a rule that cannot be evaluated")]
+    Parameters(#[source] ampco::RuleError),
+}
+
+impl Directive {
+    /// The decision as a message that answers the learner with incarnation `learner`.
+    pub fn new(learner: u64, decision: &Decision) -> Self {
+        let (rule, first, second) = match decision.rule {
+            Rule::Fixed { style_weight } => (FIXED, style_weight, 0.0),
+            Rule::Guided { ceiling } => (GUIDED, ceiling, 0.0),
+            Rule::AdaMimic { ceiling } => (ADAMIMIC, ceiling, 0.0),
+            Rule::Bounded { lower, upper } => (BOUNDED, lower, upper),
+        };
+        let bounds = decision.bounds();
+        Self {
+            scheduler: 0,
+            sequence: 0,
+            learner,
+            iteration: decision.iteration,
+            switched_at: decision.switched_at().unwrap_or(u64::MAX),
+            phase: decision.phase.number(),
+            rule,
+            first,
+            second,
+            granularity: match decision.granularity {
+                Granularity::Sample => 0,
+                Granularity::Mean => 1,
+            },
+            warned: u32::from(decision.warning().is_some()),
+            lower: bounds.map_or(f64::NAN, |bounds| bounds.lower()),
+            upper: bounds.map_or(f64::NAN, |bounds| bounds.upper()),
+            breakout_rate: decision.breakout_rate.unwrap_or(f64::NAN),
+            threshold: decision.threshold,
+            trend: decision.trend.unwrap_or(f64::NAN),
+        }
+    }
+
+    /// The rule, checked.
+    pub fn rule(&self) -> Result<Rule, RuleError> {
+        let rule = match self.rule {
+            FIXED => Rule::Fixed {
+                style_weight: self.first,
+            },
+            GUIDED => Rule::Guided {
+                ceiling: self.first,
+            },
+            ADAMIMIC => Rule::AdaMimic {
+                ceiling: self.first,
+            },
+            BOUNDED => Rule::Bounded {
+                lower: self.first,
+                upper: self.second,
+            },
+            unknown => return Err(RuleError::UnknownRule(unknown)),
+        };
+        rule.validate().map_err(RuleError::Parameters)?;
+        Ok(rule)
+    }
+
+    /// Whose rewards the rule is evaluated on.
+    pub fn granularity(&self) -> Result<Granularity, RuleError> {
+        match self.granularity {
+            0 => Ok(Granularity::Sample),
+            1 => Ok(Granularity::Mean),
+            unknown => Err(RuleError::UnknownGranularity(unknown)),
+        }
+    }
+
+    /// Lower and upper bound of phase II.
+    pub fn bounds(&self) -> Option<(f64, f64)> {
+        Some((number(self.lower)?, number(self.upper)?))
+    }
+
+    /// β, once it exists.
+    pub fn breakout_rate(&self) -> Option<f64> {
+        number(self.breakout_rate)
+    }
+
+    /// Slope of the reward window, once it exists.
+    pub fn trend(&self) -> Option<f64> {
+        number(self.trend)
+    }
+
+    /// Iteration whose report brought phase II.
+    pub fn switched_at(&self) -> Option<u64> {
+        (self.switched_at != u64::MAX).then_some(self.switched_at)
+    }
+
+    /// Whether it answers iteration `iteration` of the learner with incarnation `learner`, or a
+    /// later one.
+    pub fn answers(&self, learner: u64, iteration: u64) -> bool {
+        self.learner == learner && self.iteration >= iteration
+    }
+}
+
+fn number(value: f64) -> Option<f64> {
+    (!value.is_nan()).then_some(value)
+}
+
+/// The scheduler's end. There is one per run.
+#[derive(Debug)]
+pub struct DirectivePublisher {
+    port: Publisher<Directives>,
+    scheduler: u64,
+    sequence: u64,
+}
+
+impl DirectivePublisher {
+    /// Opens the stream; fails with [`PortError::Taken`] while another scheduler lives.
+    pub fn new(node: &Node) -> Result<Self, PortError> {
+        Ok(Self {
+            port: Publisher::open(node, 1, Duration::ZERO)?,
+            scheduler: node.incarnation(),
+            sequence: 0,
+        })
+    }
+
+    /// Sends a directive. Never waits; a learner that comes later gets the newest.
+    pub fn send(&mut self, directive: Directive) -> Result<(), PortError> {
+        let mut loan = self.port.loan(1)?;
+        loan.payload_mut()[0] = Directive {
+            scheduler: self.scheduler,
+            sequence: self.sequence,
+            ..directive
+        };
+        self.sequence += 1;
+        self.port.send(loan)?;
+        Ok(())
+    }
+}
+
+/// Outcome of waiting for a directive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Answer {
+    /// The scheduler answered.
+    Came(Directive),
+    /// It did not answer in time; the newest directive remains in force.
+    Late,
+    /// This process was asked to stop.
+    Shutdown,
+}
+
+/// The learner's end, or a monitor's.
+#[derive(Debug)]
+pub struct DirectiveSubscriber {
+    port: Subscriber<Directives>,
+    newest: Option<Directive>,
+}
+
+impl DirectiveSubscriber {
+    /// Opens the stream.
+    pub fn new(node: &Node) -> Result<Self, PortError> {
+        let port = Subscriber::open(node)?;
+        Ok(Self { port, newest: None })
+    }
+
+    /// The newest directive ever received.
+    pub fn newest(&mut self) -> Result<Option<Directive>, PortError> {
+        if let Some(sample) = self.port.newest()? {
+            self.newest = Some(sample.payload()[0]);
+        }
+        Ok(self.newest)
+    }
+
+    /// Sleeps until the scheduler has answered iteration `iteration` of the learner with
+    /// incarnation `learner`, for at most `timeout`; ticks.
+    pub fn wait_for(
+        &mut self,
+        learner: u64,
+        iteration: u64,
+        timeout: Duration,
+    ) -> Result<Answer, PortError> {
+        let deadline = Instant::now() + timeout;
+        loop {
+            if let Some(directive) = self.newest()?
+                && directive.answers(learner, iteration)
+            {
+                return Ok(Answer::Came(directive));
+            }
+            let rest = deadline.saturating_duration_since(Instant::now());
+            if rest.is_zero() {
+                return Ok(Answer::Late);
+            }
+            if self.port.wait(rest)? == Wake::Shutdown {
+                return Ok(Answer::Shutdown);
+            }
+        }
+    }
+
+    /// Sleeps until a directive was sent, `timeout` is over, or this process should stop; ticks.
+    pub fn wait(&self, timeout: Duration) -> Result<Wake, PortError> {
+        self.port.wait(timeout)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ampco::{Bounds, Phase, Switch};
+
+    use super::*;
+
+    fn decision(rule: Rule) -> Decision {
+        Decision {
+            iteration: 41,
+            phase: Phase::One,
+            rule,
+            granularity: Granularity::Mean,
+            breakout_rate: None,
+            threshold: 0.05,
+            trend: Some(-0.5),
+        }
+    }
+
+    #[test]
+    fn every_rule_comes_back_as_it_was() {
+        for rule in [
+            Rule::Fixed { style_weight: 0.7 },
+            Rule::Guided { ceiling: 0.9 },
+            Rule::AdaMimic { ceiling: 1.5 },
+            Rule::Bounded {
+                lower: -0.25,
+                upper: 0.75,
+            },
+        ] {
+            let directive = Directive::new(7, &decision(rule));
+            assert_eq!(directive.rule(), Ok(rule));
+            assert_eq!(directive.granularity(), Ok(Granularity::Mean));
+            assert_eq!(directive.phase, 1);
+            assert_eq!(directive.switched_at(), None);
+            assert_eq!(directive.bounds(), None);
+            assert_eq!(directive.breakout_rate(), None);
+            assert_eq!(directive.trend(), Some(-0.5));
+        }
+    }
+
+    #[test]
+    fn phase_two_brings_its_bounds_and_its_doubt() {
+        let switch = Switch {
+            iteration: 40,
+            bounds: Bounds::around(0.5, 0.125, 0.75), // 0.5 ± 2·0.125
+            trend: -1.0,                              // falling: a warning
+        };
+        let directive = Directive::new(
+            7,
+            &Decision {
+                phase: Phase::Two(switch),
+                breakout_rate: Some(0.04),
+                ..decision(Rule::Fixed { style_weight: 0.5 })
+            },
+        );
+        assert_eq!(directive.phase, 2);
+        assert_eq!(directive.bounds(), Some((0.25, 0.75)));
+        assert_eq!(directive.switched_at(), Some(40));
+        assert_eq!(directive.breakout_rate(), Some(0.04));
+        assert_eq!(directive.warned, 1);
+    }
+
+    #[test]
+    fn what_names_no_rule_is_refused() {
+        let wrong = Directive {
+            rule: 9,
+            ..Directive::default()
+        };
+        assert_eq!(wrong.rule(), Err(RuleError::UnknownRule(9)));
+        let wrong = Directive {
+            rule: GUIDED,
+            first: f32::NAN,
+            ..Directive::default()
+        };
+        assert!(matches!(wrong.rule(), Err(RuleError::Parameters(_))));
+    }
+
+    #[test]
+    fn an_answer_is_for_one_learner_and_lasts() {
+        let directive = Directive::new(7, &decision(Rule::Guided { ceiling: 1.0 }));
+        assert!(directive.answers(7, 41));
+        assert!(directive.answers(7, 40));
+        assert!(!directive.answers(7, 42));
+        assert!(!directive.answers(8, 41)); // the report of an earlier life of the learner
+    }
+}

@@ -1,0 +1,368 @@
+//! One end of a stream: open it, then loan and send, or receive and wait.
+//!
+//! Separate because opening is where everything can be wrong (another protocol version, a place
+//! still held by the dead, no memory) and is the same for each stream. The typed ends are in
+//! [`crate::rollout`], [`crate::weights`], [`crate::reward`] and [`crate::directive`].
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+use std::time::{Duration, Instant};
+
+use iceoryx2::port::BackpressureAction;
+use iceoryx2::port::listener::{Listener, ListenerWaitError};
+use iceoryx2::port::notifier::Notifier;
+use iceoryx2::port::update_connections::UpdateConnections;
+use iceoryx2::port::{LoanError, ReceiveError, SendError};
+use iceoryx2::prelude::{AllocationStrategy, BackpressureStrategy};
+use iceoryx2::sample::Sample;
+use iceoryx2::sample_mut::SampleMut;
+
+use crate::domain::DomainError;
+use crate::presence::{Node, TICK, Tend};
+use crate::room;
+use crate::service::{self, TAKEOVER};
+use crate::stream::Stream;
+
+/// The flavour of iceoryx2: between processes, ports may be held by several threads.
+pub(crate) type Service = iceoryx2::prelude::ipc_threadsafe::Service;
+
+/// Why a stream cannot be joined or used.
+#[derive(Debug, thiserror::Error)]
+pub enum PortError {
+    /// The domain itself cannot be used.
+    #[error("joining the domain of the run")]
+    Domain(#[from] DomainError),
+    /// iceoryx2 refused this process.
+    #[error("joining the domain of the run as {role}: {cause}")]
+    Join {
+        /// Role of this process.
+        role: String,
+        /// What iceoryx2 said.
+        cause: String,
+    },
+    /// The run was started by programs of another version.
+    #[error(
+        "stream {stream} of this run speaks protocol version {theirs}, this program speaks {ours}: \
+         stop the run, then start all its programs from one build"
+    )]
+    Version {
+        /// Name of the stream.
+        stream: &'static str,
+        /// Version of the running processes.
+        theirs: String,
+        /// Version of this program.
+        ours: u32,
+    },
+    /// All places of the stream are held by living processes.
+    #[error(
+        "stream {stream} has {limit} place(s) for a {side} and all are taken by living processes: \
+         {remedy}"
+    )]
+    Taken {
+        /// Name of the stream.
+        stream: &'static str,
+        /// `writer` or `reader`.
+        side: &'static str,
+        /// How many places there are.
+        limit: usize,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// Shared memory is full.
+    #[error(
+        "stream {stream} needs {needed} bytes of shared memory, /dev/shm has {free} free: enlarge it \
+         (docker run --shm-size, mount -o remount,size=… /dev/shm), lower the number of environments \
+         per actor, or delete what dead runs left there (/dev/shm/ampco_*)"
+    )]
+    Memory {
+        /// Name of the stream.
+        stream: &'static str,
+        /// Bytes needed, a margin included.
+        needed: u64,
+        /// Bytes free.
+        free: u64,
+    },
+    /// A message does not have the size that its header or the configuration promises.
+    #[error("stream {stream}: a message of {got} numbers where {expected} were expected")]
+    Length {
+        /// Name of the stream.
+        stream: &'static str,
+        /// Numbers expected.
+        expected: usize,
+        /// Numbers found.
+        got: usize,
+    },
+    /// Anything else that the middleware or the system refused.
+    #[error("stream {stream}: {action}: {cause}")]
+    System {
+        /// Name of the stream.
+        stream: &'static str,
+        /// What was tried.
+        action: &'static str,
+        /// What was said.
+        cause: String,
+    },
+}
+
+/// Why waiting ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wake {
+    /// A message was sent, or a writer came or went: receive until nothing is left.
+    Message,
+    /// The time is over.
+    Timeout,
+    /// This process was asked to stop.
+    Shutdown,
+}
+
+/// What became of a message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SendOutcome {
+    /// A reader has it.
+    Delivered,
+    /// Nobody reads this stream now: the message is lost.
+    Lost,
+    /// The reader's buffer stayed full for the whole patience: the message is lost.
+    Dropped,
+    /// This process was asked to stop while the buffer was full: the message is lost.
+    Interrupted,
+}
+
+/// A message being written in shared memory.
+pub(crate) type Loan<S> = SampleMut<Service, [<S as Stream>::Item], <S as Stream>::Header>;
+/// A message being read in shared memory.
+pub(crate) type Received<S> = Sample<Service, [<S as Stream>::Item], <S as Stream>::Header>;
+
+type RawPublisher<S> =
+    iceoryx2::port::publisher::Publisher<Service, [<S as Stream>::Item], <S as Stream>::Header>;
+type RawSubscriber<S> =
+    iceoryx2::port::subscriber::Subscriber<Service, [<S as Stream>::Item], <S as Stream>::Header>;
+
+/// Below this a wait only looks: the system counts microseconds and takes none for eternity.
+const SHORTEST_WAIT: Duration = Duration::from_micros(10);
+
+const WAITING: u8 = 0;
+const OUT_OF_PATIENCE: u8 = 1;
+const INTERRUPTED: u8 = 2;
+
+/// Writing end.
+#[derive(Debug)]
+pub(crate) struct Publisher<S: Stream> {
+    raw: Arc<Tended<RawPublisher<S>>>,
+    bell: Notifier<Service>,
+    node: Node,
+    verdict: Arc<AtomicU8>,
+}
+
+impl<S: Stream> Publisher<S> {
+    /// Opens the stream for messages of exactly `len` items; a send to a full buffer is given up
+    /// after `patience`.
+    pub(crate) fn open(node: &Node, len: usize, patience: Duration) -> Result<Self, PortError> {
+        let spec = S::SPEC;
+        room::require(spec.name, reserved_bytes::<S>(len))?;
+        let messages = service::messages::<S>(node)?;
+        let events = service::events(node, &spec)?;
+        let verdict = Arc::new(AtomicU8::new(WAITING));
+        let raw = service::place(node, &spec, "writer", spec.publishers, || {
+            let (verdict, node) = (Arc::clone(&verdict), node.clone());
+            messages
+                .publisher_builder()
+                .initial_max_slice_len(len)
+                .allocation_strategy(AllocationStrategy::Static)
+                .max_loaned_samples(spec.loaned)
+                .override_sample_preallocation(move |worst_case| spec.messages().min(worst_case))
+                .backpressure_strategy(BackpressureStrategy::RetryUntilDelivered)
+                .set_backpressure_handler(move |state| {
+                    let end = if node.shutdown().requested() {
+                        INTERRUPTED
+                    } else if state.elapsed_time >= patience {
+                        OUT_OF_PATIENCE
+                    } else {
+                        // A reader that was killed is still counted until someone cleans up.
+                        node.clean_when_due();
+                        return BackpressureAction::Retry;
+                    };
+                    verdict.store(end, Ordering::Relaxed);
+                    BackpressureAction::DiscardDataAndFail
+                })
+                .create()
+        })?;
+        let segment = format!("_{}.data", raw.id().value());
+        room::commit(spec.name, node.domain().prefix(), &segment)?;
+        let bell = service::place(node, &spec, "writer", spec.publishers, || {
+            events.notifier_builder().create()
+        })?;
+        let raw = Arc::new(Tended(raw));
+        let weak = Arc::downgrade(&raw);
+        node.register(weak);
+        Ok(Self {
+            raw,
+            bell,
+            node: node.clone(),
+            verdict,
+        })
+    }
+
+    /// Memory for one message of `len` items; its content is whatever was there before.
+    pub(crate) fn loan(&self, len: usize) -> Result<Loan<S>, PortError> {
+        let deadline = Instant::now() + TAKEOVER;
+        loop {
+            match self.raw.0.loan_slice_uninit(len) {
+                // SAFETY: the items are plain numbers for which every bit pattern is a value, and
+                // the memory is a mapped file, which the kernel has filled with zeros.
+                Ok(sample) => return Ok(unsafe { sample.assume_init() }),
+                // Dead or slow readers hold the other messages; both end.
+                Err(LoanError::OutOfMemory) if Instant::now() < deadline => {
+                    self.node.tick();
+                    std::thread::yield_now();
+                }
+                Err(error) => return Err(system::<S>("loaning memory", error)),
+            }
+        }
+    }
+
+    /// Sends, then wakes the readers.
+    pub(crate) fn send(&self, loan: Loan<S>) -> Result<SendOutcome, PortError> {
+        self.verdict.store(WAITING, Ordering::Relaxed);
+        let sent = loan.send();
+        self.ring();
+        match sent {
+            Ok(0) => Ok(SendOutcome::Lost),
+            Ok(_) => Ok(SendOutcome::Delivered),
+            Err(SendError::UnableToDeliver) => Ok(match self.verdict.load(Ordering::Relaxed) {
+                INTERRUPTED => SendOutcome::Interrupted,
+                _ => SendOutcome::Dropped,
+            }),
+            // A reader came or went in this moment; the next message finds it settled.
+            Err(SendError::ConnectionError(error)) => {
+                tracing::warn!(stream = S::SPEC.name, ?error, "message lost");
+                Ok(SendOutcome::Lost)
+            }
+            Err(error) => Err(system::<S>("sending", error)),
+        }
+    }
+
+    /// Wakes everyone who waits on this stream.
+    fn ring(&self) {
+        // Fails when a listener died just now or has not emptied its queue: it is awake then.
+        if let Err(error) = self.bell.notify() {
+            tracing::debug!(stream = S::SPEC.name, ?error, "waking readers");
+        }
+    }
+}
+
+/// Reading end.
+#[derive(Debug)]
+pub(crate) struct Subscriber<S: Stream> {
+    raw: Arc<Tended<RawSubscriber<S>>>,
+    ear: Listener<Service>,
+    node: Node,
+}
+
+impl<S: Stream> Subscriber<S> {
+    /// Opens the stream.
+    pub(crate) fn open(node: &Node) -> Result<Self, PortError> {
+        let spec = S::SPEC;
+        room::require(spec.name, 0)?;
+        let messages = service::messages::<S>(node)?;
+        let events = service::events(node, &spec)?;
+        // The ear first: a message that arrives in between is then heard as well as received.
+        let ear = service::place(node, &spec, "reader", spec.subscribers, || {
+            events.listener_builder().create()
+        })?;
+        let raw = service::place(node, &spec, "reader", spec.subscribers, || {
+            messages.subscriber_builder().create()
+        })?;
+        let raw = Arc::new(Tended(raw));
+        let weak = Arc::downgrade(&raw);
+        node.register(weak);
+        Ok(Self {
+            raw,
+            ear,
+            node: node.clone(),
+        })
+    }
+
+    /// The next message, if there is one.
+    pub(crate) fn receive(&self) -> Result<Option<Received<S>>, PortError> {
+        let mut refused = None;
+        // A writer that died while connecting fails once and is then forgotten.
+        for _ in 0..3 {
+            match self.raw.0.receive() {
+                Ok(sample) => return Ok(sample),
+                Err(error @ ReceiveError::ConnectionFailure(_)) => {
+                    self.node.clean();
+                    refused = Some(error);
+                }
+                Err(error) => return Err(system::<S>("receiving", error)),
+            }
+        }
+        tracing::warn!(stream = S::SPEC.name, error = ?refused, "a writer cannot be reached");
+        Ok(None)
+    }
+
+    /// The newest message of those waiting, if there is one.
+    pub(crate) fn newest(&self) -> Result<Option<Received<S>>, PortError> {
+        let mut newest = None;
+        while let Some(sample) = self.receive()? {
+            newest = Some(sample);
+        }
+        Ok(newest)
+    }
+
+    /// Sleeps until something was sent, the time is over, or this process should stop; ticks.
+    pub(crate) fn wait(&self, timeout: Duration) -> Result<Wake, PortError> {
+        let deadline = Instant::now() + timeout;
+        loop {
+            if self.node.shutdown().requested() {
+                return Ok(Wake::Shutdown);
+            }
+            self.node.tick();
+            let mut woken = false;
+            let slice = deadline.saturating_duration_since(Instant::now()).min(TICK);
+            let heard = if slice < SHORTEST_WAIT {
+                self.ear.try_wait(|_| woken = true)
+            } else {
+                self.ear.timed_wait(|_| woken = true, slice)
+            };
+            match heard {
+                Ok(_) | Err(ListenerWaitError::InterruptSignal) => {}
+                Err(error) => return Err(system::<S>("waiting", error)),
+            }
+            if woken {
+                return Ok(Wake::Message);
+            }
+            if Instant::now() >= deadline {
+                return Ok(Wake::Timeout);
+            }
+        }
+    }
+}
+
+/// A port that connects to new peers on every tick of its node.
+#[derive(Debug)]
+struct Tended<P>(P);
+
+impl<P: UpdateConnections + Send + Sync> Tend for Tended<P> {
+    fn tend(&self) {
+        if let Err(error) = self.0.update_connections() {
+            tracing::debug!(?error, "connecting to new peers");
+        }
+    }
+}
+
+/// Bytes of shared memory that one writer of messages of `len` items reserves.
+pub(crate) fn reserved_bytes<S: Stream>(len: usize) -> u64 {
+    // iceoryx2's own header, ours, and the rounding of each message and of the whole segment.
+    const OVERHEAD: usize = 256;
+    let message = len * size_of::<S::Item>() + size_of::<S::Header>() + OVERHEAD;
+    (S::SPEC.messages() * message) as u64 + 64 * 1024
+}
+
+fn system<S: Stream>(action: &'static str, error: impl std::fmt::Debug) -> PortError {
+    PortError::System {
+        stream: S::SPEC.name,
+        action,
+        cause: format!("{error:?}"),
+    }
+}

@@ -1,0 +1,240 @@
+//! Being there: joining a domain, noticing the dead, hearing the request to stop.
+//!
+//! Separate because every process does this alike, whatever it writes or reads. A dead process
+//! leaves its places in the streams taken until someone cleans up after it; everyone does, about
+//! every [`TICK`].
+
+use std::fmt;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, Once, PoisonError, Weak};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use iceoryx2::prelude::{
+    LogLevel, NodeBuilder, NodeName, SignalHandlingMode, set_log_level_from_env_or,
+};
+use signal_hook::consts::{SIGINT, SIGTERM};
+
+use crate::domain::Domain;
+use crate::port::{PortError, Service};
+use crate::room;
+
+/// Time between two looks for dead processes and new readers.
+pub const TICK: Duration = Duration::from_millis(100);
+
+/// Environment variable by which a supervisor tells its children its process id.
+pub const SUPERVISOR_VARIABLE: &str = "AMPCO_SUPERVISOR";
+
+/// A request to stop, seen by everyone who holds a clone.
+#[derive(Clone, Debug, Default)]
+pub struct Shutdown(Arc<AtomicBool>);
+
+impl Shutdown {
+    /// Requested by SIGTERM or SIGINT. A second signal adds nothing: whoever cannot wait kills.
+    pub fn on_signals() -> Result<Self, PresenceError> {
+        let shutdown = Self::default();
+        for signal in [SIGTERM, SIGINT] {
+            signal_hook::flag::register(signal, Arc::clone(&shutdown.0))
+                .map_err(PresenceError::Signals)?;
+        }
+        Ok(shutdown)
+    }
+
+    /// Requested only by [`Self::request`]: for tests, and for a process that must keep talking
+    /// after a signal and therefore looks at the signals itself.
+    pub fn manual() -> Self {
+        Self::default()
+    }
+
+    /// Asks everyone who holds a clone to stop.
+    pub fn request(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether to stop.
+    pub fn requested(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// Why a process cannot be present.
+#[derive(Debug, thiserror::Error)]
+pub enum PresenceError {
+    /// The handlers of SIGTERM and SIGINT could not be installed.
+    #[error("installing the handlers of SIGTERM and SIGINT")]
+    Signals(#[source] std::io::Error),
+    /// The variable that names the supervisor holds no process id.
+    #[error("{SUPERVISOR_VARIABLE}={value}: expected the process id of the supervisor")]
+    Variable {
+        /// Its value.
+        value: String,
+    },
+    /// The system refused to tie this process to its parent.
+    #[error("asking for a signal when the supervisor ends")]
+    ParentSignal(#[source] std::io::Error),
+    /// The supervisor ended before this process could tie itself to it.
+    #[error("supervisor {supervisor} has already ended: start the run again")]
+    Orphaned {
+        /// Its process id.
+        supervisor: u32,
+    },
+}
+
+/// Makes this process receive SIGTERM when its supervisor ends, however that ends.
+///
+/// Call it first in `main`. Returns false and does nothing when [`SUPERVISOR_VARIABLE`] is not set,
+/// that is, when the program was started by hand. The kernel watches the *thread* that started the
+/// child: a supervisor must start children from a thread that lives as long as it does.
+pub fn end_with_supervisor() -> Result<bool, PresenceError> {
+    let Some(value) = std::env::var_os(SUPERVISOR_VARIABLE) else {
+        return Ok(false);
+    };
+    let value = value.to_string_lossy().into_owned();
+    let Ok(supervisor) = value.parse::<u32>() else {
+        return Err(PresenceError::Variable { value });
+    };
+    rustix::process::set_parent_process_death_signal(Some(rustix::process::Signal::TERM))
+        .map_err(|error| PresenceError::ParentSignal(error.into()))?;
+    // The supervisor may have ended before the line above; then no signal will ever come.
+    if std::os::unix::process::parent_id() != supervisor {
+        return Err(PresenceError::Orphaned { supervisor });
+    }
+    Ok(true)
+}
+
+/// Something that looks after its connections on every tick.
+pub(crate) trait Tend: Send + Sync {
+    fn tend(&self);
+}
+
+/// This process as a member of a domain. Clones are the same member; the last one leaves.
+#[derive(Clone)]
+pub struct Node(Arc<Membership>);
+
+struct Membership {
+    handle: iceoryx2::node::Node<Service>,
+    ports: Mutex<Vec<Weak<dyn Tend>>>,
+    domain: Domain,
+    role: String,
+    shutdown: Shutdown,
+    incarnation: u64,
+    joined: Instant,
+    /// Milliseconds after `joined` at which the next tick is due.
+    due: AtomicU64,
+}
+
+impl fmt::Debug for Node {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter
+            .debug_struct("Node")
+            .field("role", &self.0.role)
+            .field("incarnation", &self.0.incarnation)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Node {
+    /// Joins `domain` under a role such as `learner` or `actor-3`, and cleans up after the dead.
+    pub fn join(domain: &Domain, role: &str, shutdown: &Shutdown) -> Result<Self, PortError> {
+        static QUIET: Once = Once::new();
+        // What it calls a warning is often the other side ending, which we report ourselves.
+        QUIET.call_once(|| set_log_level_from_env_or(LogLevel::Error));
+
+        let refused = |cause: String| PortError::Join {
+            role: role.to_owned(),
+            cause,
+        };
+        let config = domain.prepare()?;
+        room::require("domain", 0)?;
+        let name = NodeName::new(role).map_err(|error| refused(format!("{error:?}")))?;
+        let handle = NodeBuilder::new()
+            .name(&name)
+            .config(&config)
+            // The shells install their own handlers, see `Shutdown`.
+            .signal_handling_mode(SignalHandlingMode::Disabled)
+            .create::<Service>()
+            .map_err(|error| refused(format!("{error:?}")))?;
+        let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH);
+        Ok(Self(Arc::new(Membership {
+            handle,
+            ports: Mutex::new(Vec::new()),
+            domain: domain.clone(),
+            role: role.to_owned(),
+            shutdown: shutdown.clone(),
+            // Nanoseconds fit u64 until the year 2554; a restart gives a larger number.
+            incarnation: since_epoch.map_or(1, |time| time.as_nanos() as u64),
+            joined: Instant::now(),
+            due: AtomicU64::new(0),
+        })))
+    }
+
+    /// Number of this life of the process: a restarted process has a larger one.
+    pub fn incarnation(&self) -> u64 {
+        self.0.incarnation
+    }
+
+    /// The request to stop that ends the waiting of this process.
+    pub fn shutdown(&self) -> &Shutdown {
+        &self.0.shutdown
+    }
+
+    /// The domain that was joined.
+    pub fn domain(&self) -> &Domain {
+        &self.0.domain
+    }
+
+    /// Once per [`TICK`], cleans up after dead processes and connects ports to new peers; otherwise
+    /// returns at once. Every waiting call of a port does this itself; call it where a process works
+    /// for long without waiting.
+    pub fn tick(&self) {
+        if self.clean_when_due() {
+            self.tend_ports();
+        }
+    }
+
+    /// The half of [`Self::tick`] that touches no port: a port that is just sending holds its own
+    /// lock and may call only this. Returns whether it was due.
+    pub(crate) fn clean_when_due(&self) -> bool {
+        let now = self.0.joined.elapsed().as_millis() as u64;
+        let due = self.0.due.load(Ordering::Relaxed);
+        let next = now + TICK.as_millis() as u64;
+        let ours = now >= due
+            && self
+                .0
+                .due
+                .compare_exchange(due, next, Ordering::Relaxed, Ordering::Relaxed)
+                .is_ok();
+        if ours {
+            self.clean();
+        }
+        ours
+    }
+
+    /// Cleans up after dead processes now.
+    pub(crate) fn clean(&self) {
+        let state = self.0.handle.try_cleanup_dead_nodes();
+        if state.cleanups > 0 {
+            tracing::info!(dead = state.cleanups, "cleaned up after dead processes");
+        }
+    }
+
+    pub(crate) fn handle(&self) -> &iceoryx2::node::Node<Service> {
+        &self.0.handle
+    }
+
+    /// Adds a port that wants to look after its connections on every tick.
+    pub(crate) fn register(&self, port: Weak<dyn Tend>) {
+        let mut ports = self.0.ports.lock().unwrap_or_else(PoisonError::into_inner);
+        ports.retain(|port| port.strong_count() > 0);
+        ports.push(port);
+    }
+
+    fn tend_ports(&self) {
+        // Taken only while another thread of this process does the same.
+        let Ok(ports) = self.0.ports.try_lock() else {
+            return;
+        };
+        for port in ports.iter().filter_map(Weak::upgrade) {
+            port.tend();
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! Rollouts: what an actor collected in T control steps of N environments.
+//!
+//! Separate because its memory layout is shared by the actor, which writes it in place step by
+//! step, and the learner, which reads it in place.
+
+mod layout;
+mod ledger;
+
+use std::fmt;
+use std::time::{Duration, Instant};
+
+use iceoryx2::prelude::ZeroCopySend;
+
+pub use layout::{RolloutLayout, RolloutStep, RolloutStepMut, RolloutView, RolloutViewMut};
+pub use ledger::{Entry, Ledger, Totals};
+
+use crate::port::{Loan, PortError, Publisher, Received, SendOutcome, Subscriber, Wake};
+use crate::presence::Node;
+use crate::stream::{Rollouts, Stream};
+
+/// Who collected a rollout, under which policy, and how long it took.
+///
+/// `actor`, `environments`, `steps`, `incarnation` and `sequence` are filled by
+/// [`RolloutPublisher::send`]; the caller gives the rest.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, ZeroCopySend)]
+#[type_name("ampco.RolloutHeader")]
+pub struct RolloutHeader {
+    /// Index of the actor, from 0.
+    pub actor: u32,
+    /// N, environments.
+    pub environments: u32,
+    /// T, control steps.
+    pub steps: u32,
+    /// Keeps the fields after it aligned; always 0.
+    pub reserved: u32,
+    /// Life of the actor, see [`Node::incarnation`].
+    pub incarnation: u64,
+    /// Rollouts that this life tried to send before this one, the lost ones included.
+    pub sequence: u64,
+    /// Incarnation of the learner whose weights were used.
+    pub learner: u64,
+    /// Version of those weights: iterations done.
+    pub policy_version: u64,
+    /// Wall-clock seconds spent in physics.
+    pub physics_seconds: f32,
+    /// Wall-clock seconds spent in policy inference.
+    pub inference_seconds: f32,
+    /// Wall-clock seconds spent waiting, for weights and for room, since the rollout before.
+    pub waiting_seconds: f32,
+    /// Wall-clock seconds from the first to the last step.
+    pub collect_seconds: f32,
+}
+
+/// An actor's end.
+pub struct RolloutPublisher {
+    port: Publisher<Rollouts>,
+    layout: RolloutLayout,
+    actor: u32,
+    incarnation: u64,
+    sequence: u64,
+    totals: SendTotals,
+    waited: Duration,
+}
+
+/// What became of the rollouts of one [`RolloutPublisher`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SendTotals {
+    /// Taken by a learner's buffer.
+    pub delivered: u64,
+    /// Sent while nobody listened.
+    pub lost: u64,
+    /// Given up because the learner's buffer stayed full, or this process was asked to stop.
+    pub dropped: u64,
+}
+
+impl fmt::Debug for RolloutPublisher {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter
+            .debug_struct("RolloutPublisher")
+            .field("actor", &self.actor)
+            .field("layout", &self.layout)
+            .field("totals", &self.totals)
+            .finish_non_exhaustive()
+    }
+}
+
+impl RolloutPublisher {
+    /// Opens the stream for actor `actor` and reserves memory for its messages.
+    ///
+    /// A send that finds the learner's buffer full waits for at most `patience`.
+    pub fn new(
+        node: &Node,
+        actor: u32,
+        layout: RolloutLayout,
+        patience: Duration,
+    ) -> Result<Self, PortError> {
+        Ok(Self {
+            port: Publisher::open(node, layout.len(), patience)?,
+            layout,
+            actor,
+            incarnation: node.incarnation(),
+            sequence: 0,
+            totals: SendTotals::default(),
+            waited: Duration::ZERO,
+        })
+    }
+
+    /// Shared memory for one rollout, to be filled over many steps and then sent. Two loans may
+    /// exist at a time. Its numbers are those of an earlier rollout until they are written.
+    pub fn loan(&self) -> Result<RolloutLoan, PortError> {
+        let sample = self.port.loan(self.layout.len())?;
+        let layout = self.layout;
+        Ok(RolloutLoan { sample, layout })
+    }
+
+    /// Sends a filled loan.
+    ///
+    /// A full buffer is waited for (until the patience ends or the process should stop); whatever
+    /// the outcome, the loan is gone and the sequence number used, so the learner sees the gap.
+    pub fn send(
+        &mut self,
+        mut loan: RolloutLoan,
+        header: RolloutHeader,
+    ) -> Result<SendOutcome, PortError> {
+        *loan.sample.user_header_mut() = RolloutHeader {
+            actor: self.actor,
+            environments: self.layout.environments as u32,
+            steps: self.layout.steps as u32,
+            reserved: 0,
+            incarnation: self.incarnation,
+            sequence: self.sequence,
+            ..header
+        };
+        self.sequence += 1;
+        let start = Instant::now();
+        let outcome = self.port.send(loan.sample)?;
+        self.waited = start.elapsed();
+        match outcome {
+            SendOutcome::Delivered => self.totals.delivered += 1,
+            SendOutcome::Lost => self.totals.lost += 1,
+            SendOutcome::Dropped | SendOutcome::Interrupted => self.totals.dropped += 1,
+        }
+        if outcome != SendOutcome::Delivered {
+            tracing::warn!(actor = self.actor, sequence = self.sequence - 1, ?outcome, totals = ?self.totals, "rollout not delivered");
+        }
+        Ok(outcome)
+    }
+
+    /// Sizes of the rollouts.
+    pub fn layout(&self) -> RolloutLayout {
+        self.layout
+    }
+
+    /// What became of the rollouts so far.
+    pub fn totals(&self) -> SendTotals {
+        self.totals
+    }
+
+    /// Time that the last send took, mostly waiting for room.
+    pub fn waited(&self) -> Duration {
+        self.waited
+    }
+}
+
+/// A rollout being written in shared memory. Dropping it gives the memory back unsent.
+pub struct RolloutLoan {
+    sample: Loan<Rollouts>,
+    layout: RolloutLayout,
+}
+
+impl fmt::Debug for RolloutLoan {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter
+            .debug_struct("RolloutLoan")
+            .field("layout", &self.layout)
+            .finish_non_exhaustive()
+    }
+}
+
+impl RolloutLoan {
+    /// All fields, to be written; [`RolloutViewMut::step`] gives those of one step.
+    pub fn view_mut(&mut self) -> RolloutViewMut<'_> {
+        self.layout.view_mut(self.sample.payload_mut())
+    }
+
+    /// All fields, as far as they were written.
+    pub fn view(&self) -> RolloutView<'_> {
+        self.layout.view(self.sample.payload())
+    }
+}
+
+/// The learner's end. There is one per run.
+#[derive(Debug)]
+pub struct RolloutSubscriber {
+    port: Subscriber<Rollouts>,
+}
+
+impl RolloutSubscriber {
+    /// Opens the stream; fails with [`PortError::Taken`] while another learner lives.
+    pub fn new(node: &Node) -> Result<Self, PortError> {
+        let port = Subscriber::open(node)?;
+        Ok(Self { port })
+    }
+
+    /// The next rollout, if there is one. Of each actor two may be held at a time: copy and drop.
+    pub fn receive(&self) -> Result<Option<Rollout>, PortError> {
+        let Some(sample) = self.port.receive()? else {
+            return Ok(None);
+        };
+        let header = sample.user_header();
+        let layout = RolloutLayout {
+            environments: header.environments as usize,
+            steps: header.steps as usize,
+        };
+        let (expected, got) = (layout.len(), sample.payload().len());
+        if expected != got {
+            let stream = Rollouts::SPEC.name;
+            return Err(PortError::Length {
+                stream,
+                expected,
+                got,
+            });
+        }
+        Ok(Some(Rollout { sample, layout }))
+    }
+
+    /// Sleeps until a rollout was sent, `timeout` is over, or this process should stop; ticks.
+    pub fn wait(&self, timeout: Duration) -> Result<Wake, PortError> {
+        self.port.wait(timeout)
+    }
+}
+
+/// A rollout being read in shared memory. Dropping it makes room for the actor.
+pub struct Rollout {
+    sample: Received<Rollouts>,
+    layout: RolloutLayout,
+}
+
+impl fmt::Debug for Rollout {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter
+            .debug_struct("Rollout")
+            .field("header", self.header())
+            .finish_non_exhaustive()
+    }
+}
+
+impl Rollout {
+    /// Who collected it, and under which policy.
+    pub fn header(&self) -> &RolloutHeader {
+        self.sample.user_header()
+    }
+
+    /// Sizes.
+    pub fn layout(&self) -> RolloutLayout {
+        self.layout
+    }
+
+    /// All fields.
+    pub fn view(&self) -> RolloutView<'_> {
+        self.layout.view(self.sample.payload())
+    }
+}

@@ -1,0 +1,237 @@
+//! The field blocks of a rollout: one table, from which sizes and views follow.
+//!
+//! Separate because it is arithmetic on slices and knows no middleware. A rollout is one `[f32]`
+//! of named blocks (structure of arrays); within a block the order is [step][environment][number].
+
+use g1::{ACTION, FEATURES, OBSERVATION};
+
+/// Sizes of a rollout.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RolloutLayout {
+    /// N, environments stepped side by side.
+    pub environments: usize,
+    /// T, control steps of 20 ms.
+    pub steps: usize,
+}
+
+/// Writes the views from the table of blocks, so that order and size are said once.
+macro_rules! blocks {
+    (
+        each step: { $( $(#[$step_doc:meta])* $step:ident: $step_width:expr, )* }
+        once: { $( $(#[$once_doc:meta])* $once:ident: $once_width:expr, )* }
+    ) => {
+        impl RolloutLayout {
+            /// Numbers of one environment and step, all per-step blocks together.
+            pub const PER_STEP: usize = 0 $( + $step_width )*;
+            /// Numbers of one environment in the blocks that do not grow with the steps.
+            pub const ONCE: usize = 0 $( + $once_width )*;
+
+            /// Every block of a rollout, to be read.
+            ///
+            /// # Panics
+            /// When `numbers` does not have [`Self::len`] items.
+            pub fn view<'a>(&self, numbers: &'a [f32]) -> RolloutView<'a> {
+                assert_eq!(numbers.len(), self.len(), "length of a rollout");
+                let rest = numbers;
+                $( let ($step, rest) = rest.split_at(self.steps * self.environments * $step_width); )*
+                $( let ($once, rest) = rest.split_at(self.environments * $once_width); )*
+                debug_assert!(rest.is_empty());
+                RolloutView { layout: *self, $( $step, )* $( $once, )* }
+            }
+
+            /// Every block of a rollout, to be written.
+            ///
+            /// # Panics
+            /// When `numbers` does not have [`Self::len`] items.
+            pub fn view_mut<'a>(&self, numbers: &'a mut [f32]) -> RolloutViewMut<'a> {
+                assert_eq!(numbers.len(), self.len(), "length of a rollout");
+                let rest = numbers;
+                $( let ($step, rest) = rest.split_at_mut(self.steps * self.environments * $step_width); )*
+                $( let ($once, rest) = rest.split_at_mut(self.environments * $once_width); )*
+                debug_assert!(rest.is_empty());
+                RolloutViewMut { layout: *self, $( $step, )* $( $once, )* }
+            }
+        }
+
+        /// A rollout to read: T·N·width numbers in each per-step block, N·width in the others.
+        #[derive(Clone, Copy, Debug)]
+        pub struct RolloutView<'a> {
+            /// Sizes.
+            pub layout: RolloutLayout,
+            $( $(#[$step_doc])* pub $step: &'a [f32], )*
+            $( $(#[$once_doc])* pub $once: &'a [f32], )*
+        }
+
+        /// A rollout to write; the blocks do not overlap.
+        #[derive(Debug)]
+        pub struct RolloutViewMut<'a> {
+            /// Sizes.
+            pub layout: RolloutLayout,
+            $( $(#[$step_doc])* pub $step: &'a mut [f32], )*
+            $( $(#[$once_doc])* pub $once: &'a mut [f32], )*
+        }
+
+        /// One step of a rollout to read: N·width numbers in each block.
+        #[derive(Clone, Copy, Debug)]
+        pub struct RolloutStep<'a> {
+            $( $(#[$step_doc])* pub $step: &'a [f32], )*
+        }
+
+        /// One step of a rollout to write: N·width numbers in each block, and the blocks that
+        /// belong to no step as a whole.
+        #[derive(Debug)]
+        pub struct RolloutStepMut<'a> {
+            $( $(#[$step_doc])* pub $step: &'a mut [f32], )*
+            $( $(#[$once_doc])* pub $once: &'a mut [f32], )*
+        }
+
+        impl<'a> RolloutView<'a> {
+            /// The blocks of step `step`, from 0.
+            pub fn step(&self, step: usize) -> RolloutStep<'a> {
+                let environments = self.layout.environments;
+                RolloutStep {
+                    $( $step: &self.$step[step * environments * $step_width..][..environments * $step_width], )*
+                }
+            }
+        }
+
+        impl RolloutViewMut<'_> {
+            /// The blocks of step `step`, from 0.
+            pub fn step(&mut self, step: usize) -> RolloutStepMut<'_> {
+                let environments = self.layout.environments;
+                RolloutStepMut {
+                    $( $step: &mut self.$step[step * environments * $step_width..][..environments * $step_width], )*
+                    $( $once: &mut *self.$once, )*
+                }
+            }
+        }
+    };
+}
+
+blocks! {
+    each step: {
+        /// o_t as the policy saw it, with sensor noise.
+        observations: OBSERVATION,
+        /// a_t, sampled.
+        actions: ACTION,
+        /// Mean of the distribution that a_t was sampled from.
+        means: ACTION,
+        /// Log-density of a_t under that distribution.
+        log_probs: 1,
+        /// r^G, the task reward (Eq. 14).
+        task_rewards: 1,
+        /// Positive mechanical work of this control step in J, summed over the joints.
+        energies: 1,
+        /// Squared planar velocity error in the heading frame, m²/s².
+        tracking_errors: 1,
+        /// 0 the episode goes on, 1 it ended by a fall, 2 by time-out.
+        ends: 1,
+        /// Steps done in the episode, this one included.
+        episode_steps: 1,
+        /// Features of the true state before the step.
+        features: FEATURES,
+        /// Features of the true state after the step; for a finished episode its own last.
+        next_features: FEATURES,
+        /// Ground reaction of the left and the right foot in N.
+        foot_forces: 2,
+    }
+    once: {
+        /// o_T, what the policy would see next.
+        last_observations: OBSERVATION,
+        /// Last observation of the episode that timed out, per environment; meaningless where none did.
+        timeout_observations: OBSERVATION,
+    }
+}
+
+impl RolloutLayout {
+    /// Numbers in the whole rollout.
+    #[expect(clippy::len_without_is_empty, reason = "a size, not a collection")]
+    pub const fn len(&self) -> usize {
+        self.environments * (self.steps * Self::PER_STEP + Self::ONCE)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAYOUT: RolloutLayout = RolloutLayout {
+        environments: 3,
+        steps: 2,
+    };
+
+    #[test]
+    fn the_table_adds_up() {
+        // 82 + 23 + 23 + six single numbers + 53 + 53 + 2 = 242 per step; 82 + 82 = 164 once.
+        assert_eq!(RolloutLayout::PER_STEP, 242);
+        assert_eq!(RolloutLayout::ONCE, 164);
+        // 3·(2·242 + 164) = 3·648
+        assert_eq!(LAYOUT.len(), 1944);
+    }
+
+    #[test]
+    fn blocks_follow_each_other_in_the_order_of_the_table() {
+        let numbers: Vec<f32> = (0..LAYOUT.len()).map(|index| index as f32).collect();
+        let view = LAYOUT.view(&numbers);
+        assert_eq!(view.observations[0], 0.0);
+        assert_eq!(view.actions[0], 492.0); // after 2·3·82
+        assert_eq!(view.means[0], 630.0); // + 2·3·23
+        assert_eq!(view.log_probs[0], 768.0); // + 2·3·23
+        assert_eq!(view.features[0], 804.0); // + 6 blocks of 2·3
+        assert_eq!(view.last_observations[0], 1452.0); // 2·3·242
+        assert_eq!(view.timeout_observations[0], 1698.0); // + 3·82
+        assert_eq!(view.timeout_observations[245], 1943.0); // the last of all
+        // Second step of the actions: environment 0 begins 3·23 numbers later.
+        assert_eq!(view.step(1).actions[0], 492.0 + 69.0);
+        assert_eq!(view.step(1).actions.len(), 69);
+    }
+
+    #[test]
+    fn what_is_written_by_step_is_read_at_its_place_and_nothing_overlaps() {
+        let mut numbers = vec![0.0; LAYOUT.len()];
+        let mut view = LAYOUT.view_mut(&mut numbers);
+        for step in 0..2 {
+            let now = view.step(step);
+            let blocks = [
+                now.observations,
+                now.actions,
+                now.means,
+                now.log_probs,
+                now.task_rewards,
+                now.energies,
+                now.tracking_errors,
+                now.ends,
+                now.episode_steps,
+                now.features,
+                now.next_features,
+                now.foot_forces,
+            ];
+            for (block, numbers) in blocks.into_iter().enumerate() {
+                // Adding finds numbers that two blocks share.
+                numbers
+                    .iter_mut()
+                    .for_each(|number| *number += (100 * step + block + 1) as f32);
+            }
+        }
+        view.last_observations.fill(1000.0);
+        view.timeout_observations.fill(2000.0);
+
+        let view = LAYOUT.view(&numbers);
+        assert!(view.step(0).observations.iter().all(|&n| n == 1.0));
+        assert!(view.step(1).observations.iter().all(|&n| n == 101.0));
+        assert!(view.step(1).ends.iter().all(|&n| n == 108.0)); // eighth block
+        assert!(view.step(0).foot_forces.iter().all(|&n| n == 12.0)); // twelfth block
+        assert!(view.last_observations.iter().all(|&n| n == 1000.0));
+        assert!(view.timeout_observations.iter().all(|&n| n == 2000.0));
+        assert!(
+            numbers.iter().all(|&n| n != 0.0),
+            "a number without a block"
+        );
+    }
+
+    #[test]
+    #[should_panic(expected = "length of a rollout")]
+    fn a_message_of_another_length_is_refused() {
+        LAYOUT.view(&[0.0; 7]);
+    }
+}

@@ -1,0 +1,243 @@
+//! Policy weights: the learner's newest policy, and what the actors are to do with it.
+//!
+//! Separate because it is the one message that orders: a rollout is the answer to it. The newest
+//! wins, and an actor that comes late still gets it. The flat layout of the numbers belongs to the
+//! crates `networks` and `policy`; here they are only carried.
+
+use std::fmt;
+use std::time::Duration;
+
+use iceoryx2::prelude::ZeroCopySend;
+
+use crate::port::{PortError, Publisher, Received, Subscriber, Wake};
+use crate::presence::Node;
+use crate::rollout::RolloutLayout;
+use crate::stream::{self, Stream};
+
+/// Most hidden layers that a header can describe.
+pub const MAX_HIDDEN_LAYERS: usize = 6;
+
+/// What an actor does on receiving weights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum WeightsOrder {
+    /// Collect a rollout.
+    Collect = 0,
+    /// Save the fleet for checkpoint `version`, then collect.
+    SaveThenCollect = 1,
+    /// Restore the fleet of checkpoint `version`, then collect.
+    RestoreThenCollect = 2,
+    /// Save the fleet for checkpoint `version`, then end.
+    SaveThenStop = 3,
+}
+
+/// Which weights these are, and what to do with them.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ZeroCopySend)]
+#[type_name("ampco.WeightsHeader")]
+pub struct WeightsHeader {
+    /// Incarnation of the learner; filled by [`WeightsPublisher::broadcast`].
+    pub learner: u64,
+    /// Version of the weights: iterations done.
+    pub version: u64,
+    /// A [`WeightsOrder`] as a number; read it with [`Self::order`].
+    pub order: u32,
+    /// How many entries of `hidden` count.
+    pub layers: u32,
+    /// Widths of the hidden layers; read them with [`Self::hidden`].
+    pub hidden: [u32; MAX_HIDDEN_LAYERS],
+    /// N of the rollouts wanted.
+    pub environments: u32,
+    /// T of the rollouts wanted.
+    pub steps: u32,
+    /// 1: collect one rollout and wait for the next version. 0: keep collecting with the newest.
+    pub lockstep: u32,
+    /// Keeps the size a multiple of eight; always 0.
+    pub reserved: u32,
+}
+
+impl WeightsHeader {
+    /// Header of version `version`; the learner's incarnation is filled in when it is sent.
+    ///
+    /// # Panics
+    /// With more than [`MAX_HIDDEN_LAYERS`] hidden layers: a configuration is refused earlier.
+    pub fn new(
+        version: u64,
+        order: WeightsOrder,
+        hidden: &[usize],
+        layout: RolloutLayout,
+        lockstep: bool,
+    ) -> Self {
+        assert!(
+            hidden.len() <= MAX_HIDDEN_LAYERS,
+            "{} hidden layers, a header holds {MAX_HIDDEN_LAYERS}",
+            hidden.len()
+        );
+        let mut widths = [0; MAX_HIDDEN_LAYERS];
+        for (width, &neurons) in widths.iter_mut().zip(hidden) {
+            *width = neurons as u32;
+        }
+        Self {
+            learner: 0,
+            version,
+            order: order as u32,
+            layers: hidden.len() as u32,
+            hidden: widths,
+            environments: layout.environments as u32,
+            steps: layout.steps as u32,
+            lockstep: u32::from(lockstep),
+            reserved: 0,
+        }
+    }
+
+    /// What to do; `None` for a number that this version does not know.
+    pub fn order(&self) -> Option<WeightsOrder> {
+        Some(match self.order {
+            0 => WeightsOrder::Collect,
+            1 => WeightsOrder::SaveThenCollect,
+            2 => WeightsOrder::RestoreThenCollect,
+            3 => WeightsOrder::SaveThenStop,
+            _ => return None,
+        })
+    }
+
+    /// Widths of the hidden layers, from the input on.
+    pub fn hidden(&self) -> &[u32] {
+        &self.hidden[..(self.layers as usize).min(MAX_HIDDEN_LAYERS)]
+    }
+
+    /// Sizes of the rollouts wanted.
+    pub fn layout(&self) -> RolloutLayout {
+        RolloutLayout {
+            environments: self.environments as usize,
+            steps: self.steps as usize,
+        }
+    }
+
+    /// Whether each version is answered by exactly one rollout.
+    pub fn is_lockstep(&self) -> bool {
+        self.lockstep != 0
+    }
+}
+
+/// The learner's end. There is one per run.
+#[derive(Debug)]
+pub struct WeightsPublisher {
+    port: Publisher<stream::Weights>,
+    len: usize,
+    learner: u64,
+}
+
+impl WeightsPublisher {
+    /// Opens the stream for policies of `len` numbers; fails with [`PortError::Taken`] while
+    /// another learner lives.
+    pub fn new(node: &Node, len: usize) -> Result<Self, PortError> {
+        Ok(Self {
+            // Overflow is on: a send never waits.
+            port: Publisher::open(node, len, Duration::ZERO)?,
+            len,
+            learner: node.incarnation(),
+        })
+    }
+
+    /// Copies `flat` into shared memory and wakes every actor. Never waits for a reader; who comes
+    /// later gets it on this process's next tick.
+    pub fn broadcast(&self, header: WeightsHeader, flat: &[f32]) -> Result<(), PortError> {
+        if flat.len() != self.len {
+            return Err(PortError::Length {
+                stream: stream::Weights::SPEC.name,
+                expected: self.len,
+                got: flat.len(),
+            });
+        }
+        let mut loan = self.port.loan(self.len)?;
+        *loan.user_header_mut() = WeightsHeader {
+            learner: self.learner,
+            ..header
+        };
+        loan.payload_mut().copy_from_slice(flat);
+        // No reader is no loss: the history keeps the newest.
+        self.port.send(loan)?;
+        Ok(())
+    }
+}
+
+/// An actor's end, or a monitor's.
+#[derive(Debug)]
+pub struct WeightsSubscriber {
+    port: Subscriber<stream::Weights>,
+}
+
+impl WeightsSubscriber {
+    /// Opens the stream.
+    pub fn new(node: &Node) -> Result<Self, PortError> {
+        let port = Subscriber::open(node)?;
+        Ok(Self { port })
+    }
+
+    /// The newest weights, if some came since the last call. Copies nothing: load them into the
+    /// policy and drop the guard.
+    pub fn newest(&self) -> Result<Option<Weights>, PortError> {
+        Ok(self.port.newest()?.map(|sample| Weights { sample }))
+    }
+
+    /// Sleeps until weights were sent, `timeout` is over, or this process should stop; ticks.
+    pub fn wait(&self, timeout: Duration) -> Result<Wake, PortError> {
+        self.port.wait(timeout)
+    }
+}
+
+/// Weights being read in shared memory.
+pub struct Weights {
+    sample: Received<stream::Weights>,
+}
+
+impl fmt::Debug for Weights {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter
+            .debug_struct("Weights")
+            .field("header", self.header())
+            .finish_non_exhaustive()
+    }
+}
+
+impl Weights {
+    /// Which weights these are, and what to do.
+    pub fn header(&self) -> &WeightsHeader {
+        self.sample.user_header()
+    }
+
+    /// The numbers, in the flat layout of the policy.
+    pub fn flat(&self) -> &[f32] {
+        self.sample.payload()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAYOUT: RolloutLayout = RolloutLayout {
+        environments: 64,
+        steps: 24,
+    };
+
+    #[test]
+    fn a_header_says_back_what_it_was_made_of() {
+        let order = WeightsOrder::RestoreThenCollect;
+        let header = WeightsHeader::new(9, order, &[256, 128, 64], LAYOUT, true);
+        assert_eq!(header.order(), Some(order));
+        assert_eq!(header.hidden(), [256, 128, 64]);
+        assert_eq!(header.layout(), LAYOUT);
+        assert!(header.is_lockstep());
+    }
+
+    #[test]
+    fn an_unknown_order_is_no_order() {
+        let header = WeightsHeader {
+            order: 4,
+            ..WeightsHeader::default()
+        };
+        assert_eq!(header.order(), None);
+    }
+}

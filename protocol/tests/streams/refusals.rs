@@ -1,0 +1,103 @@
+//! What is refused, and what the refusal says.
+
+use std::time::Duration;
+
+use protocol::{
+    DomainError, Node, PortError, RolloutLayout, RolloutPublisher, RolloutSubscriber, Shutdown,
+    WeightsHeader, WeightsOrder, WeightsPublisher, WeightsSubscriber,
+};
+
+use crate::harness::{DEADLINE, LAYOUT, Run};
+
+#[test]
+fn another_version_is_refused_and_both_are_named() {
+    let run = Run::new();
+    let learner = run.join("learner");
+    let _subscriber = RolloutSubscriber::new(&learner).unwrap();
+
+    let newer = run.domain.clone().speaking(7002);
+    let actor = Node::join(&newer, "actor-0", &Shutdown::manual()).unwrap();
+    let error = RolloutPublisher::new(&actor, 0, LAYOUT, DEADLINE).unwrap_err();
+    let PortError::Version { theirs, ours, .. } = &error else {
+        panic!("{error}");
+    };
+    assert_eq!((theirs.as_str(), *ours), ("1", 7002));
+    let text = error.to_string();
+    assert!(
+        text.contains("version 1") && text.contains("7002"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_second_learner_is_refused_while_the_first_lives() {
+    let run = Run::new();
+    let (first, second) = (run.join("learner"), run.join("learner"));
+    let rollouts = RolloutSubscriber::new(&first).unwrap();
+    let weights = WeightsPublisher::new(&first, 1).unwrap();
+    for error in [
+        RolloutSubscriber::new(&second).unwrap_err(),
+        WeightsPublisher::new(&second, 1).unwrap_err(),
+    ] {
+        let PortError::Taken { limit, .. } = error else {
+            panic!("{error}");
+        };
+        assert_eq!(limit, 1);
+        assert!(error.to_string().contains("second process"), "{error}");
+    }
+    // It may take over once the first has left.
+    drop((rollouts, weights));
+    RolloutSubscriber::new(&second).unwrap();
+    WeightsPublisher::new(&second, 1).unwrap();
+}
+
+#[test]
+fn memory_that_does_not_exist_is_refused_before_it_is_touched() {
+    let run = Run::new();
+    let actor = run.join("actor-0");
+    // 100 million environments · 648 numbers · 4 bytes · 6 messages: a petabyte and a half.
+    let layout = RolloutLayout {
+        environments: 100_000_000,
+        steps: 2,
+    };
+    let error = RolloutPublisher::new(&actor, 0, layout, DEADLINE).unwrap_err();
+    let PortError::Memory { needed, free, .. } = error else {
+        panic!("{error}");
+    };
+    assert!(needed > free);
+    assert!(error.to_string().contains("--shm-size"), "{error}");
+}
+
+#[test]
+fn weights_of_another_shape_are_refused() {
+    let run = Run::new();
+    let learner = run.join("learner");
+    let publisher = WeightsPublisher::new(&learner, 3).unwrap();
+    let header = WeightsHeader::new(0, WeightsOrder::Collect, &[], LAYOUT, true);
+    let error = publisher.broadcast(header, &[0.0; 2]).unwrap_err();
+    let PortError::Length { expected, got, .. } = error else {
+        panic!("{error}");
+    };
+    assert_eq!((expected, got), (3, 2));
+}
+
+#[test]
+fn a_domain_is_not_removed_under_its_members_and_leaves_nothing_afterwards() {
+    let run = Run::new();
+    let (learner, actor) = (run.join("learner"), run.join("actor-5"));
+    let publisher = WeightsPublisher::new(&learner, 1).unwrap();
+    let subscriber = WeightsSubscriber::new(&actor).unwrap();
+    subscriber.wait(Duration::ZERO).unwrap();
+
+    let error = run.domain.remove().unwrap_err();
+    let DomainError::InUse { members, .. } = &error else {
+        panic!("{error}");
+    };
+    assert_eq!(members.len(), 2);
+    assert!(members[0].starts_with("actor-5 (process "), "{members:?}");
+
+    drop((publisher, subscriber, learner, actor));
+    assert_eq!(run.domain.members().unwrap(), []);
+    assert!(run.domain.remove().unwrap() > 0);
+    assert!(run.domain.leftovers().unwrap().is_empty());
+}
