@@ -1,0 +1,168 @@
+//! Commands c_t = (v*_x, v*_y, ω*): what the robot is asked to do, and for how long.
+//!
+//! Separate because commands are drawn at two moments, at a reset (where they may match the start)
+//! and every few seconds after, by the same rule.
+
+use crate::config::{self, Invalid, range};
+use rand::{Rng, RngExt};
+use serde::{Deserialize, Serialize};
+
+/// Which velocities are commanded.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct CommandConfig {
+    /// Forward velocity, m/s: least and greatest. Default 0.4 to 1.2, where the recipe began that
+    /// walked; the paper gives no ranges. Ranges that contain 0 from the start taught hopping.
+    pub forward: [f32; 2],
+    /// Leftward velocity, m/s. Default 0: the reference motion walks straight.
+    pub lateral: [f32; 2],
+    /// Yaw rate, rad/s. Default 0, as above.
+    pub yaw_rate: [f32; 2],
+    /// Share of drawn commands that are zero: stand still. Default 0.
+    pub standing_share: f32,
+    /// Seconds between new commands, drawn uniformly. Default 3 to 10, the span in use among
+    /// published trainers.
+    pub resample_seconds: [f32; 2],
+    /// Share of starts from reference motion whose command is that motion's own velocity.
+    /// Default 0.9, of the recipe that walked; 0.7 later in training.
+    pub matched_share: f32,
+}
+
+impl Default for CommandConfig {
+    fn default() -> Self {
+        Self {
+            forward: [0.4, 1.2],
+            lateral: [0.0, 0.0],
+            yaw_rate: [0.0, 0.0],
+            standing_share: 0.0,
+            resample_seconds: [3.0, 10.0],
+            matched_share: 0.9,
+        }
+    }
+}
+
+impl CommandConfig {
+    /// Checks every field; names the first bad one, its value and a remedy.
+    pub fn validate(&self) -> Result<(), Invalid> {
+        range("command.forward", self.forward)?;
+        range("command.lateral", self.lateral)?;
+        range("command.yaw_rate", self.yaw_rate)?;
+        config::share("command.standing_share", self.standing_share)?;
+        range("command.resample_seconds", self.resample_seconds)?;
+        config::at_least(
+            "command.resample_seconds[0]",
+            self.resample_seconds[0],
+            0.02,
+        )?;
+        config::share("command.matched_share", self.matched_share)
+    }
+
+    /// A command from the ranges.
+    pub fn draw(&self, rng: &mut impl Rng) -> [f32; 3] {
+        // All numbers are drawn whatever the outcome, so that a change of one share leaves the rest
+        // of a run's random sequence alone.
+        let stand = rng.random::<f32>() < self.standing_share;
+        let command = [self.forward, self.lateral, self.yaw_rate]
+            .map(|[least, greatest]| rng.random_range(least..=greatest));
+        if stand { [0.0; 3] } else { command }
+    }
+
+    /// A command for a start from motion that goes at `clip`: that velocity in the matched share.
+    pub fn draw_for_start(&self, clip: &[f32; 3], rng: &mut impl Rng) -> [f32; 3] {
+        let drawn = self.draw(rng);
+        if rng.random::<f32>() < self.matched_share {
+            *clip
+        } else {
+            drawn
+        }
+    }
+
+    /// Control steps until the next command.
+    pub fn draw_interval(&self, rng: &mut impl Rng) -> u32 {
+        config::steps(self.resample_seconds, rng)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand_pcg::Pcg64Mcg;
+
+    #[test]
+    fn commands_fill_their_ranges() {
+        let config = CommandConfig {
+            forward: [-1.0, 2.0],
+            lateral: [0.5, 0.5],
+            yaw_rate: [-0.3, 0.0],
+            standing_share: 0.25,
+            ..CommandConfig::default()
+        };
+        let mut rng = Pcg64Mcg::seed_from_u64(1);
+        let draws: Vec<_> = (0..4_000).map(|_| config.draw(&mut rng)).collect();
+        let standing = draws.iter().filter(|c| **c == [0.0; 3]).count();
+        // Binomial(4000, ¼): 1000 ± 27, so five deviations are 137.
+        assert!(standing.abs_diff(1_000) < 137, "{standing}");
+        let moving = draws.iter().filter(|c| **c != [0.0; 3]);
+        let (mut least, mut greatest) = (f32::MAX, f32::MIN);
+        for [vx, vy, yaw] in moving {
+            assert!((-1.0..=2.0).contains(vx) && *vy == 0.5 && (-0.3..=0.0).contains(yaw));
+            least = least.min(*vx);
+            greatest = greatest.max(*vx);
+        }
+        assert!(least < -0.95 && greatest > 1.95, "{least} {greatest}");
+    }
+
+    #[test]
+    fn starts_match_their_clip_in_the_given_share() {
+        let clip = [0.8, 0.0, 0.1];
+        let mut rng = Pcg64Mcg::seed_from_u64(2);
+        for (share, expected) in [(0.0, 0), (0.9, 1_800), (1.0, 2_000)] {
+            let config = CommandConfig {
+                matched_share: share,
+                ..CommandConfig::default()
+            };
+            let matched = (0..2_000)
+                .filter(|_| config.draw_for_start(&clip, &mut rng) == clip)
+                .count();
+            // Binomial(2000, 0.9) has a deviation of 13.4.
+            assert!(matched.abs_diff(expected) < 67, "{matched} of {expected}");
+        }
+    }
+
+    #[test]
+    fn intervals_are_seconds_in_steps() {
+        let mut rng = Pcg64Mcg::seed_from_u64(3);
+        let config = CommandConfig::default();
+        for _ in 0..1_000 {
+            assert!((150..=500).contains(&config.draw_interval(&mut rng))); // 3 to 10 s at 50 Hz
+        }
+    }
+
+    #[test]
+    fn bad_values_are_named() {
+        let config = CommandConfig {
+            forward: [1.0, 0.5],
+            ..CommandConfig::default()
+        };
+        assert!(
+            config
+                .validate()
+                .unwrap_err()
+                .to_string()
+                .contains("command.forward")
+        );
+        let config = CommandConfig {
+            matched_share: 1.5,
+            ..CommandConfig::default()
+        };
+        assert!(
+            config
+                .validate()
+                .unwrap_err()
+                .to_string()
+                .contains("command.matched_share")
+        );
+        CommandConfig::default().validate().unwrap();
+    }
+}

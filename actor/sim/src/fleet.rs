@@ -1,0 +1,292 @@
+//! N environments in a fixed order: the unit that an actor steps, saves and restores.
+//!
+//! Separate because the layout of the slices is a contract with rollouts; what happens to one robot
+//! is told in `env`.
+
+use crate::actuator::Gains;
+use crate::config::{self, Invalid};
+use crate::env::{Environment, Setting};
+use crate::model::Variation;
+use crate::randomization::RandomizationConfig;
+use crate::start::Starts;
+use crate::task::{End, TaskConfig};
+use crate::world::{Engine, World};
+use g1::{ACTION, FEATURES, OBSERVATION, RobotState, observation};
+use serde::{Deserialize, Serialize};
+
+/// Why a fleet cannot be built or restored.
+#[derive(Debug, thiserror::Error)]
+pub enum SimError {
+    /// A configuration value is not usable.
+    #[error(transparent)]
+    Invalid(#[from] Invalid),
+    /// The bytes are no snapshot of a fleet of this build.
+    #[error("a fleet snapshot of {bytes} bytes cannot be read")]
+    Snapshot {
+        /// Length of what was given.
+        bytes: usize,
+        /// What the decoder met.
+        #[source]
+        source: bincode::error::DecodeError,
+    },
+    /// The snapshot is of another number of environments.
+    #[error("the snapshot holds {found} environments, this fleet has {expected}")]
+    Count {
+        /// Environments in the snapshot.
+        found: usize,
+        /// Environments of this fleet.
+        expected: usize,
+    },
+}
+
+/// Where one step of the fleet is written: every slice holds a row per environment.
+pub struct StepOut<'a> {
+    /// Task reward rᴳ (Eq. 14), N.
+    pub task_rewards: &'a mut [f32],
+    /// Positive mechanical work of the motors in this step, J, N.
+    pub energies: &'a mut [f32],
+    /// Squared velocity error ‖v* − v‖², m²/s², N.
+    pub tracking_errors: &'a mut [f32],
+    /// 0 running, 1 fall, 2 time-out, N.
+    pub ends: &'a mut [f32],
+    /// Steps done in the episode, this one included, N.
+    pub episode_steps: &'a mut [f32],
+    /// Features of o_{t+1}, N·53; of a finished episode its own last.
+    pub next_features: &'a mut [f32],
+    /// Vertical force on left and right sole, mean over the step, N (newtons), N·2.
+    pub foot_forces: &'a mut [f32],
+    /// The last policy observation of episodes that timed out on this step, N·82; other rows are
+    /// left alone.
+    pub timeout_observations: &'a mut [f32],
+}
+
+/// Environments stepped together. Same seed, same bits: an environment's future depends on the
+/// seed, its index and its actions only.
+pub struct Fleet {
+    setting: Setting,
+    engine: Engine,
+    environments: Vec<Environment>,
+    observations: Vec<f32>,
+    features: Vec<f32>,
+    faults: u64,
+}
+
+/// What a snapshot holds: all that a continuation depends on, configuration aside.
+#[derive(Serialize, Deserialize)]
+struct Snapshot<E, F> {
+    environments: E,
+    observations: F,
+    features: F,
+    faults: u64,
+}
+
+impl Fleet {
+    /// Environments at the start of their first episodes.
+    pub fn new(
+        task: &TaskConfig,
+        randomization: &RandomizationConfig,
+        starts: Starts,
+        environments: usize,
+        seed: u64,
+    ) -> Result<Self, SimError> {
+        Self::with_gains(
+            task,
+            randomization,
+            starts,
+            environments,
+            seed,
+            Gains::of_the_robot(),
+        )
+    }
+
+    /// With motors of other gains than the robot's.
+    pub fn with_gains(
+        task: &TaskConfig,
+        randomization: &RandomizationConfig,
+        starts: Starts,
+        environments: usize,
+        seed: u64,
+        gains: Gains,
+    ) -> Result<Self, SimError> {
+        task.validate()?;
+        randomization.validate()?;
+        starts.validate()?;
+        config::require(
+            environments > 0,
+            "environments",
+            environments,
+            "give at least 1",
+        )?;
+        let setting = Setting {
+            task: task.clone(),
+            randomization: randomization.clone(),
+            starts,
+            gains,
+            template: World::new(&Variation::NOMINAL),
+        };
+        let mut fleet = Self {
+            environments: (0..environments)
+                .map(|index| Environment::new(&setting, seed, index))
+                .collect(),
+            setting,
+            engine: Engine::new(),
+            observations: vec![0.0; environments * OBSERVATION],
+            features: vec![0.0; environments * FEATURES],
+            faults: 0,
+        };
+        for index in 0..environments {
+            fleet.look(index);
+        }
+        Ok(fleet)
+    }
+
+    /// Number of environments N.
+    pub fn len(&self) -> usize {
+        self.environments.len()
+    }
+
+    /// Never: a fleet has at least one environment.
+    pub fn is_empty(&self) -> bool {
+        self.environments.is_empty()
+    }
+
+    /// o_t as the policy sees it, N·82, until the next step.
+    pub fn observations(&self) -> &[f32] {
+        &self.observations
+    }
+
+    /// Features of the true state at t, N·53.
+    pub fn features(&self) -> &[f32] {
+        &self.features
+    }
+
+    /// The true state of an environment's robot.
+    pub fn state(&self, environment: usize) -> &RobotState {
+        self.environments[environment].state()
+    }
+
+    /// The command of an environment.
+    pub fn command(&self, environment: usize) -> [f32; 3] {
+        self.environments[environment].command()
+    }
+
+    /// Holds a command for the rest of an environment's episode. Its observation shows it at once.
+    pub fn hold_command(&mut self, environment: usize, command: [f32; 3]) {
+        self.environments[environment].hold_command(command);
+        self.observations[environment * OBSERVATION..][observation::COMMAND]
+            .copy_from_slice(&command);
+    }
+
+    /// Steps thrown away so far because an action or a state was not finite.
+    pub fn faults(&self) -> u64 {
+        self.faults
+    }
+
+    /// Advances every environment by one control step (20 ms) with its action, N·23, and begins new
+    /// episodes where one ended. Afterwards [`Fleet::observations`] and [`Fleet::features`] are those
+    /// of t + 1, of the new episode where there is one.
+    ///
+    /// # Panics
+    /// If a slice has another length than its field says.
+    pub fn step(&mut self, actions: &[f32], out: &mut StepOut<'_>) {
+        let n = self.len();
+        assert_eq!(actions.len(), n * ACTION, "actions are N·23");
+        out.check(n);
+        let actions = actions.as_chunks::<ACTION>().0;
+        for (i, action) in actions.iter().enumerate() {
+            let environment = &mut self.environments[i];
+            let outcome = environment.step(&self.setting, &mut self.engine, action);
+            self.faults += u64::from(outcome.faulty);
+            out.task_rewards[i] = outcome.task_reward;
+            out.energies[i] = outcome.exertion.energy;
+            out.tracking_errors[i] = outcome.tracking_error;
+            out.ends[i] = outcome.end.code();
+            out.episode_steps[i] = environment.steps() as f32;
+            out.foot_forces[2 * i..][..2].copy_from_slice(&outcome.exertion.foot_forces);
+            observation::features(
+                &outcome.state,
+                &mut out.next_features[i * FEATURES..][..FEATURES],
+            );
+            if outcome.end == End::Timeout {
+                // Seen before the reset: the value of a timed-out episode is that of its own end.
+                environment.observe(
+                    &self.setting.randomization,
+                    &mut out.timeout_observations[i * OBSERVATION..][..OBSERVATION],
+                );
+            }
+            environment.proceed(&self.setting, outcome.end);
+            self.look(i);
+        }
+    }
+
+    /// Everything that the future depends on, configuration aside.
+    pub fn save(&self) -> Vec<u8> {
+        let snapshot = Snapshot {
+            environments: &self.environments,
+            observations: &self.observations,
+            features: &self.features,
+            faults: self.faults,
+        };
+        bincode::serde::encode_to_vec(&snapshot, bincode::config::standard())
+            .expect("every part of a fleet can be written to memory")
+    }
+
+    /// Continues, bit by bit, where [`Fleet::save`] was called on a fleet of the same configuration.
+    /// On an error the fleet stays as it was.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), SimError> {
+        let decoded = bincode::serde::decode_from_slice(bytes, bincode::config::standard());
+        let (snapshot, _): (Snapshot<Vec<Environment>, Vec<f32>>, usize) =
+            decoded.map_err(|source| SimError::Snapshot {
+                bytes: bytes.len(),
+                source,
+            })?;
+        let (found, expected) = (snapshot.environments.len(), self.len());
+        let whole = snapshot.observations.len() == found * OBSERVATION
+            && snapshot.features.len() == found * FEATURES;
+        if found != expected || !whole {
+            return Err(SimError::Count { found, expected });
+        }
+        self.environments = snapshot.environments;
+        self.observations = snapshot.observations;
+        self.features = snapshot.features;
+        self.faults = snapshot.faults;
+        Ok(())
+    }
+
+    /// Writes what is seen of an environment now.
+    fn look(&mut self, i: usize) {
+        let environment = &mut self.environments[i];
+        environment.observe(
+            &self.setting.randomization,
+            &mut self.observations[i * OBSERVATION..][..OBSERVATION],
+        );
+        observation::features(
+            environment.state(),
+            &mut self.features[i * FEATURES..][..FEATURES],
+        );
+    }
+}
+
+impl StepOut<'_> {
+    fn check(&self, n: usize) {
+        for (name, length, expected) in [
+            ("task_rewards", self.task_rewards.len(), n),
+            ("energies", self.energies.len(), n),
+            ("tracking_errors", self.tracking_errors.len(), n),
+            ("ends", self.ends.len(), n),
+            ("episode_steps", self.episode_steps.len(), n),
+            ("next_features", self.next_features.len(), n * FEATURES),
+            ("foot_forces", self.foot_forces.len(), n * 2),
+            (
+                "timeout_observations",
+                self.timeout_observations.len(),
+                n * OBSERVATION,
+            ),
+        ] {
+            assert_eq!(length, expected, "length of {name} for {n} environments");
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

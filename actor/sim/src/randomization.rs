@@ -1,0 +1,368 @@
+//! Domain randomisation: Table I, a row per pair of fields, each with its own switch.
+//!
+//! Separate so that the table can be read here and nowhere else. Three rows change the robot or the
+//! floor for an episode ([`Variation`]), one pushes it, five blur what the policy observes; reward,
+//! features and falls always see the true state.
+
+use crate::config::{self, Invalid, range};
+use crate::model::Variation;
+use g1::observation;
+use nalgebra::Vector3;
+use rand::{Rng, RngExt};
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// The `[randomization]` section. Ranges are those of Table I; all rows are on, as in the paper.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RandomizationConfig {
+    /// Vary the torso's mass each episode.
+    pub mass_variation: bool,
+    /// Added mass, kg.
+    pub mass_range: [f32; 2],
+    /// Vary the friction between soles and ground each episode; off, it is 1.
+    pub friction: bool,
+    /// Friction coefficient.
+    pub friction_range: [f32; 2],
+    /// Shift the torso's centre of mass each episode.
+    pub com_offset: bool,
+    /// Shift along each axis, m.
+    pub com_range: [f32; 2],
+    /// Push the robot now and then: a jump of its velocity.
+    pub impulse: bool,
+    /// Size of the jump along world x and along world y, m/s; each sign is drawn.
+    pub impulse_range: [f32; 2],
+    /// Seconds between pushes. Default 5 to 10; the paper gives none.
+    pub impulse_seconds: [f32; 2],
+    /// Blur the observed linear velocity.
+    pub linear_velocity_noise: bool,
+    /// Its noise, m/s.
+    pub linear_velocity_range: [f32; 2],
+    /// Blur the observed angular velocity.
+    pub angular_velocity_noise: bool,
+    /// Its noise, rad/s.
+    pub angular_velocity_range: [f32; 2],
+    /// Blur the observed direction of gravity.
+    pub gravity_noise: bool,
+    /// Its noise; Table I says m/s², the observation is a unit vector.
+    pub gravity_range: [f32; 2],
+    /// Blur the observed joint positions.
+    pub joint_position_noise: bool,
+    /// Their noise, rad.
+    pub joint_position_range: [f32; 2],
+    /// Blur the observed joint velocities.
+    pub joint_velocity_noise: bool,
+    /// Their noise, rad/s.
+    pub joint_velocity_range: [f32; 2],
+}
+
+impl Default for RandomizationConfig {
+    fn default() -> Self {
+        Self {
+            mass_variation: true,
+            mass_range: [-0.5, 0.5],
+            friction: true,
+            friction_range: [0.5, 1.0],
+            com_offset: true,
+            com_range: [-0.1, 0.1],
+            impulse: true,
+            impulse_range: [0.0, 0.5],
+            impulse_seconds: [5.0, 10.0],
+            linear_velocity_noise: true,
+            linear_velocity_range: [-0.1, 0.1],
+            angular_velocity_noise: true,
+            angular_velocity_range: [-0.2, 0.2],
+            gravity_noise: true,
+            gravity_range: [-0.05, 0.05],
+            joint_position_noise: true,
+            joint_position_range: [-0.01, 0.01],
+            joint_velocity_noise: true,
+            joint_velocity_range: [-1.5, 1.5],
+        }
+    }
+}
+
+impl RandomizationConfig {
+    /// Every row off: the robot of the tables, exact sensors, no pushes.
+    pub fn none() -> Self {
+        Self {
+            mass_variation: false,
+            friction: false,
+            com_offset: false,
+            impulse: false,
+            linear_velocity_noise: false,
+            angular_velocity_noise: false,
+            gravity_noise: false,
+            joint_position_noise: false,
+            joint_velocity_noise: false,
+            ..Self::default()
+        }
+    }
+
+    /// Checks every field; names the first bad one, its value and a remedy.
+    pub fn validate(&self) -> Result<(), Invalid> {
+        range("mass_range", self.mass_range)?;
+        // The torso weighs 7.8 kg and has to keep a positive mass.
+        config::at_least("mass_range[0]", self.mass_range[0], -7.0)?;
+        range("friction_range", self.friction_range)?;
+        config::at_least("friction_range[0]", self.friction_range[0], 0.0)?;
+        range("com_range", self.com_range)?;
+        range("impulse_range", self.impulse_range)?;
+        range("impulse_seconds", self.impulse_seconds)?;
+        config::at_least("impulse_seconds[0]", self.impulse_seconds[0], 0.02)?;
+        range("linear_velocity_range", self.linear_velocity_range)?;
+        range("angular_velocity_range", self.angular_velocity_range)?;
+        range("gravity_range", self.gravity_range)?;
+        range("joint_position_range", self.joint_position_range)?;
+        range("joint_velocity_range", self.joint_velocity_range)
+    }
+
+    /// The robot and the floor of a new episode.
+    pub fn draw_variation(&self, rng: &mut impl Rng) -> Variation {
+        let mut variation = Variation::NOMINAL;
+        if self.mass_variation {
+            variation.torso_mass = uniform(self.mass_range, rng);
+        }
+        if self.com_offset {
+            variation.torso_com = [(); 3].map(|()| uniform(self.com_range, rng));
+        }
+        if self.friction {
+            variation.friction = uniform(self.friction_range, rng);
+        }
+        variation
+    }
+
+    /// Whether any row changes the robot or the floor.
+    pub fn varies(&self) -> bool {
+        self.mass_variation || self.com_offset || self.friction
+    }
+
+    /// A push: the change of the robot's velocity, world frame, m/s.
+    pub fn draw_push(&self, rng: &mut impl Rng) -> Vector3<f32> {
+        let mut component = || {
+            let size = uniform(self.impulse_range, rng);
+            if rng.random::<bool>() { size } else { -size }
+        };
+        Vector3::new(component(), component(), 0.0)
+    }
+
+    /// Control steps until the next push; none when pushes are off.
+    pub fn draw_push_interval(&self, rng: &mut impl Rng) -> Option<u32> {
+        self.impulse
+            .then(|| config::steps(self.impulse_seconds, rng))
+    }
+
+    /// Adds sensor noise to a policy observation, a fresh draw each step.
+    pub fn blur(&self, observation: &mut [f32], rng: &mut impl Rng) {
+        let rows: [(bool, [f32; 2], Range<usize>); 5] = [
+            (
+                self.linear_velocity_noise,
+                self.linear_velocity_range,
+                observation::LINEAR_VELOCITY,
+            ),
+            (
+                self.angular_velocity_noise,
+                self.angular_velocity_range,
+                observation::ANGULAR_VELOCITY,
+            ),
+            (self.gravity_noise, self.gravity_range, observation::GRAVITY),
+            (
+                self.joint_position_noise,
+                self.joint_position_range,
+                observation::JOINT_POSITION,
+            ),
+            (
+                self.joint_velocity_noise,
+                self.joint_velocity_range,
+                observation::JOINT_VELOCITY,
+            ),
+        ];
+        for (on, range, numbers) in rows {
+            if on {
+                for number in &mut observation[numbers] {
+                    *number += uniform(range, rng);
+                }
+            }
+        }
+    }
+}
+
+fn uniform([least, greatest]: [f32; 2], rng: &mut impl Rng) -> f32 {
+    least + (greatest - least) * rng.random::<f32>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand_pcg::Pcg64Mcg;
+
+    fn rng() -> Pcg64Mcg {
+        Pcg64Mcg::seed_from_u64(7)
+    }
+
+    /// Least and greatest of many draws.
+    fn spread(mut draw: impl FnMut() -> f32) -> [f32; 2] {
+        (0..2_000)
+            .map(|_| draw())
+            .fold([f32::MAX, f32::MIN], |[a, b], x| [a.min(x), b.max(x)])
+    }
+
+    /// The draws fill the range of Table I: they stay inside and come within 2 % of both ends.
+    fn fills(got: [f32; 2], [least, greatest]: [f32; 2]) {
+        let margin = 0.02 * (greatest - least);
+        assert!(
+            got[0] >= least && got[1] <= greatest,
+            "{got:?} leaves {least} to {greatest}"
+        );
+        assert!(
+            got[0] < least + margin && got[1] > greatest - margin,
+            "{got:?} does not fill"
+        );
+    }
+
+    #[test]
+    fn rows_of_the_robot_and_the_floor() {
+        let none = RandomizationConfig::none();
+        assert_eq!(none.draw_variation(&mut rng()), Variation::NOMINAL);
+        assert!(!none.varies());
+
+        let mass = RandomizationConfig {
+            mass_variation: true,
+            ..RandomizationConfig::none()
+        };
+        let mut rng = rng();
+        fills(
+            spread(|| mass.draw_variation(&mut rng).torso_mass),
+            [-0.5, 0.5],
+        );
+        let drawn = mass.draw_variation(&mut rng);
+        assert_eq!(
+            Variation {
+                torso_mass: 0.0,
+                ..drawn
+            },
+            Variation::NOMINAL
+        );
+
+        let friction = RandomizationConfig {
+            friction: true,
+            ..RandomizationConfig::none()
+        };
+        fills(
+            spread(|| friction.draw_variation(&mut rng).friction),
+            [0.5, 1.0],
+        );
+        let drawn = friction.draw_variation(&mut rng);
+        assert_eq!(
+            Variation {
+                friction: 1.0,
+                ..drawn
+            },
+            Variation::NOMINAL
+        );
+
+        let com = RandomizationConfig {
+            com_offset: true,
+            ..RandomizationConfig::none()
+        };
+        for axis in 0..3 {
+            fills(
+                spread(|| com.draw_variation(&mut rng).torso_com[axis]),
+                [-0.1, 0.1],
+            );
+        }
+        let drawn = com.draw_variation(&mut rng);
+        assert_eq!(
+            Variation {
+                torso_com: [0.0; 3],
+                ..drawn
+            },
+            Variation::NOMINAL
+        );
+    }
+
+    #[test]
+    fn row_of_pushes() {
+        assert_eq!(
+            RandomizationConfig::none().draw_push_interval(&mut rng()),
+            None
+        );
+        let pushes = RandomizationConfig {
+            impulse: true,
+            ..RandomizationConfig::none()
+        };
+        let mut rng = rng();
+        for axis in 0..2 {
+            fills(
+                spread(|| pushes.draw_push(&mut rng)[axis].abs()),
+                [0.0, 0.5],
+            );
+            // Both signs come about equally often: Binomial(2000, ½) has a deviation of 22.
+            let left = (0..2_000)
+                .filter(|_| pushes.draw_push(&mut rng)[axis] < 0.0)
+                .count();
+            assert!(left.abs_diff(1_000) < 112, "{left}");
+        }
+        assert_eq!(pushes.draw_push(&mut rng).z, 0.0);
+        for _ in 0..500 {
+            let steps = pushes.draw_push_interval(&mut rng).unwrap();
+            assert!((250..=500).contains(&steps)); // 5 to 10 s at 50 Hz
+        }
+    }
+
+    #[test]
+    fn rows_of_the_sensors() {
+        let none = RandomizationConfig::none();
+        type Row = (fn(&mut RandomizationConfig), Range<usize>, f32);
+        let rows: [Row; 5] = [
+            (|c| c.linear_velocity_noise = true, 1..4, 0.1),
+            (|c| c.angular_velocity_noise = true, 4..7, 0.2),
+            (|c| c.gravity_noise = true, 7..10, 0.05),
+            (|c| c.joint_position_noise = true, 13..36, 0.01),
+            (|c| c.joint_velocity_noise = true, 36..59, 1.5),
+        ];
+        let mut rng = rng();
+        let mut still = [0.25; g1::OBSERVATION];
+        none.blur(&mut still, &mut rng);
+        assert_eq!(still, [0.25; g1::OBSERVATION]);
+        for (switch, numbers, size) in rows {
+            let mut config = none.clone();
+            switch(&mut config);
+            let mut blur = || {
+                let mut observation = [0.0; g1::OBSERVATION];
+                config.blur(&mut observation, &mut rng);
+                observation
+            };
+            for (i, number) in blur().into_iter().enumerate() {
+                assert_eq!(number != 0.0, numbers.contains(&i), "number {i}");
+            }
+            fills(spread(|| blur()[numbers.start]), [-size, size]);
+        }
+    }
+
+    #[test]
+    fn impossible_ranges_are_refused() {
+        RandomizationConfig::default().validate().unwrap();
+        let bad = RandomizationConfig {
+            mass_range: [-8.0, 0.0],
+            ..RandomizationConfig::default()
+        };
+        assert!(
+            bad.validate()
+                .unwrap_err()
+                .to_string()
+                .contains("mass_range")
+        );
+        let bad = RandomizationConfig {
+            com_range: [0.1, -0.1],
+            ..RandomizationConfig::default()
+        };
+        assert!(
+            bad.validate()
+                .unwrap_err()
+                .to_string()
+                .contains("com_range")
+        );
+    }
+}
