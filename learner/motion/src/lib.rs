@@ -1,1 +1,18 @@
-//! motion
+//! Reference motion of the G1: what the discriminator takes for human.
+//!
+//! Separate from learning because it is data and geometry only. Clips come from the built-in
+//! generator ([`gait`]: no file, no download) or from CSV files ([`import`]); both become states at
+//! 50 Hz ([`Clip`]) in a [`Dataset`] that is drawn from.
+#![forbid(unsafe_code)]
+
+pub mod clip;
+pub mod config;
+pub mod dataset;
+pub mod error;
+pub mod gait;
+pub mod import;
+
+pub use clip::{Clip, FRAME_SECONDS};
+pub use config::{ClipConfig, Gait, MotionConfig, QuaternionOrder};
+pub use dataset::{Dataset, TRANSITION};
+pub use error::MotionError;

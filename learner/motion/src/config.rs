@@ -1,0 +1,291 @@
+//! The `[motion]` section: which clips the discriminator learns from.
+//!
+//! Separate because it is what a user writes; what comes of it is [`crate::Dataset`].
+
+use crate::error::MotionError;
+use crate::gait::{RUNNING_SPEEDS, WALKING_SPEEDS};
+use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+/// Reference motion.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct MotionConfig {
+    /// The clips. Default: walking at five speeds from 0.4 to 1.2 m/s, the one of a comfortable
+    /// walk (0.98 m/s) with weight 3: the mixture with which the G1 learnt to walk soonest.
+    pub clips: Vec<ClipConfig>,
+    /// Whether every clip is also shown mirrored, left for right. Default: true.
+    pub mirror: bool,
+}
+
+/// One clip: a built-in gait or a file, never both.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ClipConfig {
+    /// A built-in gait.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gait: Option<Gait>,
+    /// Speed of a built-in gait, m/s: 0.4–1.8 walking, 1.8–2.7 running; none for standing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed: Option<f64>,
+    /// A CSV file: x y z (m), quaternion, 23 joints (rad) in robot order or named by a header.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<PathBuf>,
+    /// Frames per second of the file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fps: Option<f64>,
+    /// Order of the quaternion in a file without header. Default: w first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub quaternion: Option<QuaternionOrder>,
+    /// Whether a file's motion is moved up or down until its feet are on the ground. Default: true.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ground: Option<bool>,
+    /// Share of the clip among all, relative to the others. Default: 1.
+    pub weight: f32,
+}
+
+/// The built-in gaits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Gait {
+    /// Standing still.
+    Stand,
+    /// Walking.
+    Walk,
+    /// Running.
+    Run,
+}
+
+/// Order of the numbers of a quaternion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum QuaternionOrder {
+    /// w x y z.
+    #[default]
+    Wxyz,
+    /// x y z w.
+    Xyzw,
+}
+
+impl Default for MotionConfig {
+    fn default() -> Self {
+        let walk = |speed, weight| ClipConfig {
+            gait: Some(Gait::Walk),
+            speed: Some(speed),
+            weight,
+            ..ClipConfig::default()
+        };
+        Self {
+            clips: vec![
+                walk(0.4, 1.0),
+                walk(0.6, 1.0),
+                walk(0.8, 1.0),
+                walk(0.98, 3.0),
+                walk(1.2, 1.0),
+            ],
+            mirror: true,
+        }
+    }
+}
+
+impl Default for ClipConfig {
+    fn default() -> Self {
+        Self {
+            gait: None,
+            speed: None,
+            file: None,
+            fps: None,
+            quaternion: None,
+            ground: None,
+            weight: 1.0,
+        }
+    }
+}
+
+impl MotionConfig {
+    /// Whether every clip is said completely and within range.
+    ///
+    /// # Errors
+    /// The first field that is not, its value and the remedy.
+    pub fn validate(&self) -> Result<(), MotionError> {
+        if self.clips.is_empty() {
+            let remedy = "name at least one clip, for example { gait = \"walk\", speed = 0.8 }";
+            return Err(wrong("clips".into(), "[]", remedy));
+        }
+        self.clips
+            .iter()
+            .enumerate()
+            .try_for_each(|(i, clip)| clip.validate(i))
+    }
+}
+
+impl ClipConfig {
+    fn validate(&self, index: usize) -> Result<(), MotionError> {
+        let field = |name: &str| format!("clips[{index}].{name}");
+        if !(self.weight.is_finite() && self.weight > 0.0 && self.weight <= 1e6) {
+            let remedy = "write a number above 0, at most 1000000; remove the clip to leave it out";
+            return Err(wrong(field("weight"), self.weight, remedy));
+        }
+        match (self.gait, &self.file) {
+            (Some(gait), None) => self.validate_gait(gait, &field),
+            (None, Some(_)) => self.validate_file(&field),
+            (Some(_), Some(_)) => Err(wrong(
+                field("file"),
+                "given beside gait",
+                "keep one of the two",
+            )),
+            (None, None) => Err(wrong(
+                format!("clips[{index}]"),
+                "{}",
+                "give gait = \"stand\", \"walk\" or \"run\", or file = \"….csv\" with fps",
+            )),
+        }
+    }
+
+    fn validate_gait(&self, gait: Gait, field: &dyn Fn(&str) -> String) -> Result<(), MotionError> {
+        for (name, given) in [
+            ("fps", self.fps.is_some()),
+            ("quaternion", self.quaternion.is_some()),
+            ("ground", self.ground.is_some()),
+        ] {
+            if given {
+                return Err(wrong(
+                    field(name),
+                    "given for a gait",
+                    "it belongs to a file; remove it",
+                ));
+            }
+        }
+        let within = |range: RangeInclusive<f64>| match self.speed {
+            Some(speed) if range.contains(&speed) => Ok(()),
+            speed => Err(wrong(
+                field("speed"),
+                speed.map_or_else(|| "missing".into(), |speed| speed.to_string()),
+                &format!(
+                    "write a speed from {} to {} m/s",
+                    range.start(),
+                    range.end()
+                ),
+            )),
+        };
+        match gait {
+            Gait::Walk => within(WALKING_SPEEDS),
+            Gait::Run => within(RUNNING_SPEEDS),
+            Gait::Stand if self.speed.is_none_or(|speed| speed == 0.0) => Ok(()),
+            Gait::Stand => Err(wrong(
+                field("speed"),
+                self.speed.unwrap_or(0.0),
+                "remove it: standing has none",
+            )),
+        }
+    }
+
+    fn validate_file(&self, field: &dyn Fn(&str) -> String) -> Result<(), MotionError> {
+        if let Some(speed) = self.speed {
+            return Err(wrong(
+                field("speed"),
+                speed,
+                "remove it: a file has its own speed",
+            ));
+        }
+        match self.fps {
+            Some(fps) if (1.0..=10_000.0).contains(&fps) => Ok(()),
+            fps => Err(wrong(
+                field("fps"),
+                fps.map_or_else(|| "missing".into(), |fps| fps.to_string()),
+                "write the frames per second of the file, from 1 to 10000",
+            )),
+        }
+    }
+}
+
+pub(crate) fn wrong(field: String, value: impl ToString, remedy: &str) -> MotionError {
+    MotionError::Config {
+        field,
+        value: value.to_string(),
+        remedy: remedy.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<MotionConfig, String> {
+        let config: MotionConfig = toml::from_str(text).map_err(|e| e.to_string())?;
+        config.validate().map_err(|e| e.to_string())?;
+        Ok(config)
+    }
+
+    #[test]
+    fn the_default_is_valid_and_survives_being_written() {
+        let config = MotionConfig::default();
+        config.validate().unwrap();
+        assert_eq!(read(&toml::to_string(&config).unwrap()).unwrap(), config);
+        assert_eq!(read("").unwrap(), config);
+    }
+
+    #[test]
+    fn clips_are_written_as_tables() {
+        let config = read(
+            "mirror = false\nclips = [{ gait = \"stand\" }, { gait = \"run\", speed = 2.2, weight = 2.0 },\n\
+             { file = \"x.csv\", fps = 60, quaternion = \"xyzw\", ground = false }]",
+        )
+        .unwrap();
+        assert_eq!(config.clips[1].gait, Some(Gait::Run));
+        assert_eq!(config.clips[2].quaternion, Some(QuaternionOrder::Xyzw));
+        assert!(!config.mirror);
+    }
+
+    #[test]
+    fn errors_name_field_value_and_remedy() {
+        for (text, parts) in [
+            ("clips = []", ["clips", "[]", "at least one"]),
+            (
+                "clips = [{ gait = \"walk\" }]",
+                ["clips[0].speed", "missing", "0.4 to 1.8"],
+            ),
+            (
+                "clips = [{ gait = \"walk\", speed = 3.5 }]",
+                ["clips[0].speed", "3.5", "0.4 to 1.8"],
+            ),
+            (
+                "clips = [{ gait = \"run\", speed = 1.0 }]",
+                ["clips[0].speed", "1", "1.8 to 2.7"],
+            ),
+            (
+                "clips = [{ gait = \"stand\", speed = 1.0 }]",
+                ["speed", "1", "remove"],
+            ),
+            (
+                "clips = [{ gait = \"stand\", weight = -1.0 }]",
+                ["clips[0].weight", "-1", "above 0"],
+            ),
+            (
+                "clips = [{ gait = \"stand\" }, { file = \"a.csv\" }]",
+                ["clips[1].fps", "missing", "frames per second"],
+            ),
+            (
+                "clips = [{ file = \"a.csv\", fps = nan }]",
+                ["clips[0].fps", "NaN", "1 to 10000"],
+            ),
+            (
+                "clips = [{ file = \"a.csv\", gait = \"stand\" }]",
+                ["clips[0].file", "gait", "one of the two"],
+            ),
+            (
+                "clips = [{ gait = \"stand\", fps = 30 }]",
+                ["clips[0].fps", "gait", "remove"],
+            ),
+            ("clips = [{}]", ["clips[0]", "{}", "walk"]),
+            ("clips = [{ gait = \"hop\" }]", ["hop", "walk", "stand"]),
+            ("mirrored = true", ["mirrored", "clips", "mirror"]),
+        ] {
+            let message = read(text).unwrap_err();
+            for part in parts {
+                assert!(message.contains(part), "{text}: {message}");
+            }
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! What can be wrong with reference motion: each error names the place and the remedy.
+//!
+//! Separate because configuration, import and gait share it.
+
+use std::path::PathBuf;
+
+/// Why a dataset of reference motion could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum MotionError {
+    /// A field of the `[motion]` section has an unusable value.
+    #[error("motion.{field} = {value}: {remedy}")]
+    Config {
+        /// Path of the field, for example `clips[2].speed`.
+        field: String,
+        /// The value as given.
+        value: String,
+        /// What to write instead.
+        remedy: String,
+    },
+    /// A file could not be read.
+    #[error("cannot read motion file {}; check motion.clips[].file (relative paths start at the folder of the configuration)", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        #[source]
+        source: std::io::Error,
+    },
+    /// A line or a cell of a file cannot be used.
+    #[error("{} line {line}{}: {problem}; {remedy}", path.display(), column_text(column))]
+    Cell {
+        /// The file.
+        path: PathBuf,
+        /// Line, counted from 1.
+        line: usize,
+        /// Column, counted from 1, if one is to blame.
+        column: Option<usize>,
+        /// What is wrong.
+        problem: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// A file as a whole cannot be used.
+    #[error("{}: {problem}; {remedy}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        problem: String,
+        /// What to do.
+        remedy: String,
+    },
+}
+
+fn column_text(column: &Option<usize>) -> String {
+    column.map_or_else(String::new, |column| format!(" column {column}"))
+}

@@ -1,0 +1,309 @@
+//! What a reference gait must be, measured on its frames by forward kinematics.
+
+use super::*;
+use crate::clip::Clip;
+use g1::kinematics::{forward_state, lowest_foot_point, lowest_sole_point, sole_points};
+use g1::mirror::mirror_state;
+use g1::observation::features;
+use g1::{FEATURES, JOINT_TABLE, JOINTS, LEFT_FOOT, RIGHT_FOOT};
+
+fn walks() -> Vec<Clip> {
+    (4..=18)
+        .map(|i| walk(f64::from(i) / 10.0).unwrap())
+        .collect()
+}
+
+fn runs() -> Vec<Clip> {
+    [1.8, 1.83, 2.0, 2.2, 2.4, 2.6, 2.7]
+        .map(|v| run(v).unwrap())
+        .into()
+}
+
+/// The frame `i` steps on, its place advanced by the whole cycles passed.
+fn frame_at(clip: &Clip, i: usize) -> RobotState {
+    let n = clip.frames.len();
+    let mut state = clip.frames[i % n];
+    state.position.x += clip.command[0] * ((i / n * n) as f64 * FRAME_SECONDS) as f32;
+    state
+}
+
+/// Root mean square of the slowest sole corner's speed while a foot is on the ground, m/s.
+fn stance_slip(clip: &Clip, foot: usize) -> f32 {
+    let (mut sum, mut count) = (0.0, 0);
+    for i in 0..clip.frames.len() {
+        let [a, b] = [i, i + 1].map(|i| sole_points(&forward_state(&frame_at(clip, i)), foot));
+        let touching = |corner: &usize| a[*corner].z < 2e-3 && b[*corner].z < 2e-3;
+        // The corner that stays down longest is the one that bears; a rolling sole has others move.
+        let speed = (0..4)
+            .filter(touching)
+            .map(|c| (b[c] - a[c]).norm() / FRAME_SECONDS as f32)
+            .reduce(f32::min);
+        if let Some(speed) = speed {
+            sum += speed * speed;
+            count += 1;
+        }
+    }
+    assert!(count > 0, "{} never stands", clip.name);
+    (sum / count as f32).sqrt()
+}
+
+/// Share of frames in which a foot is within 2 mm of the ground.
+fn duty(clip: &Clip, feet: &[usize]) -> f32 {
+    let down = |f: &&RobotState| {
+        feet.iter()
+            .any(|&foot| lowest_sole_point(&forward_state(f), foot) < 2e-3)
+    };
+    clip.frames.iter().filter(down).count() as f32 / clip.frames.len() as f32
+}
+
+#[test]
+fn the_standing_foot_does_not_slip() {
+    for clip in walks().iter().chain(&runs()) {
+        for foot in [LEFT_FOOT, RIGHT_FOOT] {
+            let slip = stance_slip(clip, foot);
+            assert!(slip < 0.1, "{} slips at {slip} m/s", clip.name);
+        }
+    }
+}
+
+#[test]
+fn soles_stay_above_ground_and_swing_clears_it() {
+    for clip in walks().iter().chain(&runs()) {
+        let lowest = clip
+            .frames
+            .iter()
+            .map(|f| lowest_foot_point(&forward_state(f)));
+        let lowest = lowest.fold(f32::INFINITY, f32::min);
+        assert!(lowest > -1e-3, "{} sinks to {lowest}", clip.name);
+        for foot in [LEFT_FOOT, RIGHT_FOOT] {
+            let heights = clip
+                .frames
+                .iter()
+                .map(|f| lowest_sole_point(&forward_state(f), foot));
+            let peak = heights.fold(0.0, f32::max);
+            assert!(peak > 0.03, "{} lifts by {peak}", clip.name);
+        }
+    }
+}
+
+#[test]
+fn joints_stay_within_their_limits() {
+    for clip in walks().iter().chain(&runs()) {
+        for frame in &clip.frames {
+            for (j, joint) in JOINT_TABLE.iter().enumerate() {
+                let (q, speed) = (frame.joint_positions[j], frame.joint_velocities[j].abs());
+                let range = joint.lower..=joint.upper;
+                assert!(
+                    range.contains(&f64::from(q)),
+                    "{}: {} at {q}",
+                    clip.name,
+                    joint.name
+                );
+                // The knee of a run at 2.7 m/s reaches 21.3 of 20 rad/s.
+                let fastest = joint.velocity_limit as f32 * 1.1;
+                assert!(
+                    speed < fastest,
+                    "{}: {} at {speed} rad/s",
+                    clip.name,
+                    joint.name
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn mean_speed_is_the_one_asked_for() {
+    for clip in walks().iter().chain(&runs()) {
+        let n = clip.frames.len();
+        let mean = clip
+            .frames
+            .iter()
+            .map(|f| f.velocity_in_heading().x)
+            .sum::<f32>()
+            / n as f32;
+        let asked = clip.command[0];
+        // 3 %: the heading frame sways with the pelvis.
+        assert!((mean / asked - 1.0).abs() < 0.03, "{}: {mean}", clip.name);
+        let way = clip.frames[n - 1].position.x - clip.frames[0].position.x;
+        let expected = asked * (n - 1) as f32 * FRAME_SECONDS as f32;
+        assert!(
+            (way / expected - 1.0).abs() < 0.03,
+            "{}: {way} m",
+            clip.name
+        );
+        assert!(
+            (clip.name.split(' ').nth(1).unwrap().parse::<f32>().unwrap() - asked).abs() < 0.005
+        );
+    }
+}
+
+#[test]
+fn left_is_right_half_a_stride_later() {
+    let speed = 0.9;
+    let (period, _) = whole_frames(normative::walking_period(speed));
+    for stride in [walk::walk(speed, period), run::run(2.2, 0.64)].map(Option::unwrap) {
+        for i in 0..10 {
+            let time = 0.1 * f64::from(i) * stride.period;
+            let here = mirror_state(&frame(&stride, time).unwrap());
+            let there = frame(&stride, time + stride.period / 2.0).unwrap();
+            let (mut a, mut b) = ([0.0; FEATURES], [0.0; FEATURES]);
+            features(&here, &mut a);
+            features(&there, &mut b);
+            for (x, y) in a.iter().zip(&b) {
+                assert!((x - y).abs() < 1e-3, "{a:?} is not {b:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn stride_rate_follows_the_speed_law() {
+    for (clip, law) in walks()
+        .iter()
+        .map(|c| (c, normative::walking_period as fn(f64) -> f64))
+        .chain(
+            runs()
+                .iter()
+                .map(|c| (c, normative::running_period as fn(f64) -> f64)),
+        )
+    {
+        // Contacts of the right foot, counted around the cycle.
+        let down: Vec<_> = clip
+            .frames
+            .iter()
+            .map(|f| lowest_sole_point(&forward_state(f), RIGHT_FOOT) < 2e-3)
+            .collect();
+        let n = down.len();
+        let contacts = (0..n).filter(|&i| down[(i + 1) % n] && !down[i]).count();
+        let period = n as f64 * FRAME_SECONDS / contacts as f64;
+        let expected = law(f64::from(clip.command[0]));
+        assert!(
+            (period / expected - 1.0).abs() < 0.01,
+            "{}: {period} s",
+            clip.name
+        );
+    }
+}
+
+#[test]
+fn velocities_are_the_derivatives_of_positions() {
+    for clip in walks().iter().chain(&runs()) {
+        let n = clip.frames.len();
+        let step = 2.0 * FRAME_SECONDS as f32;
+        let (mut error, mut size) = ([0.0; 3], [0.0; 3]);
+        for i in n..2 * n {
+            let (a, now, b) = (
+                frame_at(clip, i - 1),
+                frame_at(clip, i),
+                frame_at(clip, i + 1),
+            );
+            let spin = (b.orientation * a.orientation.inverse()).scaled_axis() / step;
+            let velocity = (b.position - a.position) / step;
+            error[0] += (velocity - now.linear_velocity).norm_squared();
+            size[0] += now.linear_velocity.norm_squared();
+            error[1] += (spin - now.angular_velocity).norm_squared();
+            size[1] += now.angular_velocity.norm_squared();
+            for j in 0..JOINTS {
+                let rate = (b.joint_positions[j] - a.joint_positions[j]) / step;
+                error[2] += (rate - now.joint_velocities[j]).powi(2);
+                size[2] += now.joint_velocities[j].powi(2);
+            }
+        }
+        // Differences over 40 ms smooth what the exact derivative shows, most at a running foot.
+        for (kind, (e, s)) in error.iter().zip(&size).enumerate() {
+            assert!(
+                (e / s).sqrt() < 0.15,
+                "{} velocity {kind}: {}",
+                clip.name,
+                (e / s).sqrt()
+            );
+        }
+    }
+}
+
+#[test]
+fn a_walk_always_has_a_foot_down_and_a_run_flies() {
+    for clip in &walks() {
+        assert!(
+            duty(clip, &[LEFT_FOOT, RIGHT_FOOT]) > 0.99,
+            "{} flies",
+            clip.name
+        );
+        assert!(duty(clip, &[LEFT_FOOT]) > 0.5 && duty(clip, &[LEFT_FOOT]) < 0.75);
+    }
+    for clip in &runs() {
+        let aloft = 1.0 - duty(clip, &[LEFT_FOOT, RIGHT_FOOT]);
+        assert!(aloft > 0.1, "{} flies {aloft} of the time", clip.name);
+    }
+}
+
+#[test]
+fn legs_alternate() {
+    for clip in walks().iter().chain(&runs()) {
+        let angle = |j: usize| {
+            let q: Vec<f32> = clip.frames.iter().map(|f| f.joint_positions[j]).collect();
+            let mean = q.iter().sum::<f32>() / q.len() as f32;
+            q.into_iter().map(move |q| q - mean).collect::<Vec<_>>()
+        };
+        let (left, right) = (angle(0), angle(6));
+        let dot = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f32>();
+        let correlation = dot(&left, &right) / (dot(&left, &left) * dot(&right, &right)).sqrt();
+        assert!(
+            correlation < -0.5,
+            "{}: hips correlate by {correlation}",
+            clip.name
+        );
+    }
+}
+
+#[test]
+fn the_pelvis_is_carried_as_high_as_the_robot_stands() {
+    for clip in walks().iter().chain(&runs()) {
+        let mean = clip.frames.iter().map(|f| f.position.z).sum::<f32>() / clip.frames.len() as f32;
+        assert!((0.73..0.79).contains(&mean), "{} at {mean}", clip.name);
+    }
+}
+
+#[test]
+fn walking_looks_human() {
+    // Against the normative knee and hip curves: rms over a stride below 16° and 8°.
+    for speed in [0.6, 0.8, 1.0, 1.2] {
+        let stride = walk::walk(speed, normative::walking_period(speed)).unwrap();
+        let rms = |joint: usize, human: &harmonics::Harmonics| {
+            let gap = |i: u32| {
+                let phase = f64::from(i) / 100.0;
+                let pose = stride.pose(phase * stride.period).unwrap();
+                (pose.joints[joint] - human.at(phase)).powi(2) / 100.0
+            };
+            (0..100).map(gap).sum::<f64>().sqrt().to_degrees()
+        };
+        assert!(
+            rms(9, &stride.leg.knee) < 16.0,
+            "knee at {speed}: {}",
+            rms(9, &stride.leg.knee)
+        );
+        assert!(rms(6, &stride.leg.hip_pitch) < 8.0);
+    }
+}
+
+#[test]
+fn every_speed_in_range_is_possible_and_no_other() {
+    for cm in (40..=180).step_by(7) {
+        assert!(walk(f64::from(cm) / 100.0).is_some(), "walk at {cm} cm/s");
+    }
+    for cm in (180..=270).step_by(9) {
+        assert!(run(f64::from(cm) / 100.0).is_some(), "run at {cm} cm/s");
+    }
+    for speed in [-1.0, 0.0, 0.39, 1.81, f64::NAN, f64::INFINITY] {
+        assert!(walk(speed).is_none());
+    }
+    assert!(run(1.0).is_none() && run(2.8).is_none() && run(f64::NAN).is_none());
+}
+
+#[test]
+fn standing_stands() {
+    let clip = stand();
+    assert!(clip.frames.iter().all(|f| *f == RobotState::standing()));
+    assert_eq!((clip.command, clip.frames.len()), ([0.0; 3], 50));
+}

@@ -1,0 +1,163 @@
+//! Imported motion whose truth is known.
+
+use super::*;
+use crate::config::QuaternionOrder;
+use crate::gait;
+use crate::import::load;
+use g1::kinematics::forward_state;
+use g1::state::STANDING_HEIGHT;
+use g1::{DEFAULT_POSE, JOINT_TABLE};
+use nalgebra::{UnitQuaternion, Vector3};
+use std::fmt::Write as _;
+
+fn options(fps: f64) -> Options {
+    Options {
+        fps,
+        quaternion: QuaternionOrder::Wxyz,
+        ground: true,
+    }
+}
+
+/// Turning left at 0.5 rad/s on a circle at 1 m/s, left knee opening at 2 rad/s, 7 cm too low.
+fn circling(fps: f64, seconds: f64) -> Vec<Row> {
+    let count = (fps * seconds).round() as usize + 1;
+    let row = |i: usize| {
+        let time = i as f64 / fps;
+        let (sin, cos) = (0.5 * time).sin_cos();
+        let mut joints = DEFAULT_POSE.map(f64::from);
+        joints[13] = 2.0 * time;
+        Row {
+            position: Vector3::new(2.0 * sin, 2.0 - 2.0 * cos, STANDING_HEIGHT - 0.07),
+            orientation: UnitQuaternion::from_euler_angles(0.0, 0.0, 0.5 * time),
+            joints,
+        }
+    };
+    (0..count).map(row).collect()
+}
+
+#[test]
+fn any_rate_becomes_50_hertz_on_the_ground_with_velocities() {
+    for fps in [25.0, 30.0, 50.0, 120.0, 500.0] {
+        let clip = clip(&circling(fps, 1.0), Path::new("circle.csv"), &options(fps)).unwrap();
+        assert_eq!(clip.frames.len(), 51, "{fps} fps");
+        assert_eq!((clip.name.as_str(), clip.cyclic), ("circle", false));
+        for frame in &clip.frames[1..50] {
+            assert!((frame.position.z - STANDING_HEIGHT as f32).abs() < 1e-5);
+            let v = frame.velocity_in_heading();
+            assert!(
+                (v.x - 1.0).abs() < 0.01 && v.y.abs() < 0.03,
+                "{fps} fps: {v:?}"
+            );
+            assert!((frame.angular_velocity.z - 0.5).abs() < 1e-3);
+            assert!((frame.joint_velocities[13] - 2.0).abs() < 1e-3);
+            assert!(frame.joint_velocities[0].abs() < 1e-4);
+        }
+        for (mean, expected) in clip.command.iter().zip([1.0, 0.0, 0.5]) {
+            assert!(
+                (mean - expected).abs() < 0.01,
+                "{fps} fps: {:?}",
+                clip.command
+            );
+        }
+    }
+}
+
+#[test]
+fn grounding_keeps_flight_and_lifts_what_sinks() {
+    let mut rows = circling(50.0, 1.0);
+    for row in &mut rows[20..30] {
+        row.position.z += 0.2; // a jump
+    }
+    rows[40].position.z -= 0.03; // a stumble into the ground
+    let clip = clip(&rows, Path::new("jump.csv"), &options(50.0)).unwrap();
+    let height = |i: usize| lowest_foot_point(&forward_state(&clip.frames[i]));
+    assert!((height(25) - 0.2).abs() < 1e-4);
+    assert!((height(10)).abs() < 1e-4);
+    for i in 0..clip.frames.len() {
+        assert!(height(i) > -1e-5, "frame {i} at {}", height(i));
+    }
+    let off = Options {
+        ground: false,
+        ..options(50.0)
+    };
+    let raw = super::clip(&rows, Path::new("jump.csv"), &off).unwrap();
+    assert!((raw.frames[0].position.z - (STANDING_HEIGHT - 0.07) as f32).abs() < 1e-6);
+}
+
+#[test]
+fn too_short_a_file_says_so() {
+    for rows in [0, 1, 2] {
+        let error = clip(
+            &circling(50.0, 1.0)[..rows],
+            Path::new("short.csv"),
+            &options(50.0),
+        );
+        let message = error.unwrap_err().to_string();
+        assert!(
+            message.contains("short.csv") && message.contains("0.04 s"),
+            "{message}"
+        );
+    }
+    assert!(
+        clip(
+            &circling(50.0, 0.04),
+            Path::new("enough.csv"),
+            &options(50.0)
+        )
+        .is_ok()
+    );
+}
+
+#[test]
+fn a_written_walk_reads_back_as_it_was() {
+    let walk = gait::walk(1.0).unwrap();
+    let mut text = String::from("x,y,z,qw,qx,qy,qz");
+    for joint in &JOINT_TABLE {
+        let _ = write!(text, ",{}", joint.name);
+    }
+    for frame in &walk.frames {
+        let q = frame.orientation;
+        let p = frame.position;
+        let _ = write!(
+            text,
+            "\n{},{},{},{},{},{},{}",
+            p.x, p.y, p.z, q.w, q.i, q.j, q.k
+        );
+        for joint in frame.joint_positions {
+            let _ = write!(text, ",{joint}");
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("walk.csv");
+    std::fs::write(&path, text).unwrap();
+    let read = load(&path, &options(50.0)).unwrap();
+    assert_eq!(read.frames.len(), walk.frames.len());
+    for (a, b) in read.frames.iter().zip(&walk.frames) {
+        assert!((a.position - b.position).norm() < 2e-3);
+        assert!(a.orientation.angle_to(&b.orientation) < 1e-3);
+        for j in 0..JOINTS {
+            assert!((a.joint_positions[j] - b.joint_positions[j]).abs() < 1e-6);
+        }
+    }
+    // The clip is not a whole number of strides once its last frame has no successor.
+    assert!((read.command[0] - 1.0).abs() < 0.03, "{:?}", read.command);
+}
+
+#[test]
+fn a_missing_file_is_named_with_the_remedy() {
+    let error = load(Path::new("/nonexistent/run.csv"), &options(50.0)).unwrap_err();
+    let message = error.to_string();
+    assert!(
+        message.contains("/nonexistent/run.csv") && message.contains("motion.clips"),
+        "{message}"
+    );
+    assert!(load(Path::new("/"), &options(50.0)).is_err()); // a folder is not a file
+}
+
+#[test]
+fn bytes_that_are_not_text_are_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("noise.csv");
+    std::fs::write(&path, [0xff, 0xfe, 0x00, 0x31, 0x2c, 0x0a]).unwrap();
+    assert!(load(&path, &options(50.0)).is_err());
+}
