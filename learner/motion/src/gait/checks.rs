@@ -6,18 +6,19 @@ use g1::kinematics::{forward_state, lowest_foot_point, lowest_sole_point, sole_p
 use g1::mirror::mirror_state;
 use g1::observation::features;
 use g1::{FEATURES, JOINT_TABLE, JOINTS, LEFT_FOOT, RIGHT_FOOT};
+use std::sync::LazyLock;
 
-fn walks() -> Vec<Clip> {
+// Made once for all tests.
+static WALKS: LazyLock<Vec<Clip>> = LazyLock::new(|| {
     (4..=18)
         .map(|i| walk(f64::from(i) / 10.0).unwrap())
         .collect()
-}
-
-fn runs() -> Vec<Clip> {
+});
+static RUNS: LazyLock<Vec<Clip>> = LazyLock::new(|| {
     [1.8, 1.83, 2.0, 2.2, 2.4, 2.6, 2.7]
         .map(|v| run(v).unwrap())
         .into()
-}
+});
 
 /// The frame `i` steps on, its place advanced by the whole cycles passed.
 fn frame_at(clip: &Clip, i: usize) -> RobotState {
@@ -58,7 +59,7 @@ fn duty(clip: &Clip, feet: &[usize]) -> f32 {
 
 #[test]
 fn the_standing_foot_does_not_slip() {
-    for clip in walks().iter().chain(&runs()) {
+    for clip in WALKS.iter().chain(RUNS.iter()) {
         for foot in [LEFT_FOOT, RIGHT_FOOT] {
             let slip = stance_slip(clip, foot);
             assert!(slip < 0.1, "{} slips at {slip} m/s", clip.name);
@@ -68,7 +69,7 @@ fn the_standing_foot_does_not_slip() {
 
 #[test]
 fn soles_stay_above_ground_and_swing_clears_it() {
-    for clip in walks().iter().chain(&runs()) {
+    for clip in WALKS.iter().chain(RUNS.iter()) {
         let lowest = clip
             .frames
             .iter()
@@ -88,7 +89,7 @@ fn soles_stay_above_ground_and_swing_clears_it() {
 
 #[test]
 fn joints_stay_within_their_limits() {
-    for clip in walks().iter().chain(&runs()) {
+    for clip in WALKS.iter().chain(RUNS.iter()) {
         for frame in &clip.frames {
             for (j, joint) in JOINT_TABLE.iter().enumerate() {
                 let (q, speed) = (frame.joint_positions[j], frame.joint_velocities[j].abs());
@@ -114,7 +115,7 @@ fn joints_stay_within_their_limits() {
 
 #[test]
 fn mean_speed_is_the_one_asked_for() {
-    for clip in walks().iter().chain(&runs()) {
+    for clip in WALKS.iter().chain(RUNS.iter()) {
         let n = clip.frames.len();
         let mean = clip
             .frames
@@ -159,15 +160,14 @@ fn left_is_right_half_a_stride_later() {
 
 #[test]
 fn stride_rate_follows_the_speed_law() {
-    for (clip, law) in walks()
+    type Law = fn(f64) -> f64;
+    let walks = WALKS
         .iter()
-        .map(|c| (c, normative::walking_period as fn(f64) -> f64))
-        .chain(
-            runs()
-                .iter()
-                .map(|c| (c, normative::running_period as fn(f64) -> f64)),
-        )
-    {
+        .map(|clip| (clip, normative::walking_period as Law));
+    let runs = RUNS
+        .iter()
+        .map(|clip| (clip, normative::running_period as Law));
+    for (clip, law) in walks.chain(runs) {
         // Contacts of the right foot, counted around the cycle.
         let down: Vec<_> = clip
             .frames
@@ -188,7 +188,7 @@ fn stride_rate_follows_the_speed_law() {
 
 #[test]
 fn velocities_are_the_derivatives_of_positions() {
-    for clip in walks().iter().chain(&runs()) {
+    for clip in WALKS.iter().chain(RUNS.iter()) {
         let n = clip.frames.len();
         let step = 2.0 * FRAME_SECONDS as f32;
         let (mut error, mut size) = ([0.0; 3], [0.0; 3]);
@@ -224,7 +224,7 @@ fn velocities_are_the_derivatives_of_positions() {
 
 #[test]
 fn a_walk_always_has_a_foot_down_and_a_run_flies() {
-    for clip in &walks() {
+    for clip in WALKS.iter() {
         assert!(
             duty(clip, &[LEFT_FOOT, RIGHT_FOOT]) > 0.99,
             "{} flies",
@@ -232,7 +232,7 @@ fn a_walk_always_has_a_foot_down_and_a_run_flies() {
         );
         assert!(duty(clip, &[LEFT_FOOT]) > 0.5 && duty(clip, &[LEFT_FOOT]) < 0.75);
     }
-    for clip in &runs() {
+    for clip in RUNS.iter() {
         let aloft = 1.0 - duty(clip, &[LEFT_FOOT, RIGHT_FOOT]);
         assert!(aloft > 0.1, "{} flies {aloft} of the time", clip.name);
     }
@@ -240,7 +240,7 @@ fn a_walk_always_has_a_foot_down_and_a_run_flies() {
 
 #[test]
 fn legs_alternate() {
-    for clip in walks().iter().chain(&runs()) {
+    for clip in WALKS.iter().chain(RUNS.iter()) {
         let angle = |j: usize| {
             let q: Vec<f32> = clip.frames.iter().map(|f| f.joint_positions[j]).collect();
             let mean = q.iter().sum::<f32>() / q.len() as f32;
@@ -259,7 +259,7 @@ fn legs_alternate() {
 
 #[test]
 fn the_pelvis_is_carried_as_high_as_the_robot_stands() {
-    for clip in walks().iter().chain(&runs()) {
+    for clip in WALKS.iter().chain(RUNS.iter()) {
         let mean = clip.frames.iter().map(|f| f.position.z).sum::<f32>() / clip.frames.len() as f32;
         assert!((0.73..0.79).contains(&mean), "{} at {mean}", clip.name);
     }
