@@ -12,6 +12,9 @@ use crate::port::{PortError, Publisher, Subscriber, Wake};
 use crate::presence::Node;
 use crate::stream::Directives;
 
+/// How long an answer is still waited for once this process was asked to stop.
+const LAST_WORD: Duration = Duration::from_secs(1);
+
 const FIXED: u32 = 0;
 const GUIDED: u32 = 1;
 const ADAMIMIC: u32 = 2;
@@ -204,7 +207,8 @@ pub enum Answer {
     Came(Directive),
     /// It did not answer in time; the newest directive remains in force.
     Late,
-    /// This process was asked to stop.
+    /// This process was asked to stop, and so perhaps was the scheduler: no answer came within
+    /// a second.
     Shutdown,
 }
 
@@ -238,20 +242,28 @@ impl DirectiveSubscriber {
         iteration: u64,
         timeout: Duration,
     ) -> Result<Answer, PortError> {
-        let deadline = Instant::now() + timeout;
+        let mut deadline = Instant::now() + timeout;
+        let mut stopping = false;
         loop {
             if let Some(directive) = self.newest()?
                 && directive.answers(learner, iteration)
             {
                 return Ok(Answer::Came(directive));
             }
+            if self.port.is_stopping() && !stopping {
+                // An answer takes milliseconds, and an iteration ended with it resumes exactly.
+                deadline = deadline.min(Instant::now() + LAST_WORD);
+                stopping = true;
+            }
             let rest = deadline.saturating_duration_since(Instant::now());
             if rest.is_zero() {
-                return Ok(Answer::Late);
+                return Ok(if stopping {
+                    Answer::Shutdown
+                } else {
+                    Answer::Late
+                });
             }
-            if self.port.wait(rest)? == Wake::Shutdown {
-                return Ok(Answer::Shutdown);
-            }
+            self.port.wait(rest)?;
         }
     }
 

@@ -5,7 +5,7 @@
 //! [`crate::rollout`], [`crate::weights`], [`crate::reward`] and [`crate::directive`].
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::time::{Duration, Instant};
 
 use iceoryx2::port::BackpressureAction;
@@ -111,7 +111,8 @@ pub enum Wake {
     Message,
     /// The time is over.
     Timeout,
-    /// This process was asked to stop.
+    /// This process was asked to stop. Each port says so once; after that it waits as before, for a
+    /// process that has something to bring to its end.
     Shutdown,
 }
 
@@ -158,13 +159,14 @@ impl<S: Stream> Publisher<S> {
     /// Opens the stream for messages of exactly `len` items; a send to a full buffer is given up
     /// after `patience`.
     pub(crate) fn open(node: &Node, len: usize, patience: Duration) -> Result<Self, PortError> {
-        let spec = S::SPEC;
+        let (spec, member) = (S::SPEC, node.membership());
         room::require(spec.name, reserved_bytes::<S>(len))?;
-        let messages = service::messages::<S>(node)?;
-        let events = service::events(node, &spec)?;
+        let messages = service::messages::<S>(member)?;
+        let events = service::events(member, &spec)?;
         let verdict = Arc::new(AtomicU8::new(WAITING));
-        let raw = service::place(node, &spec, "writer", spec.publishers, || {
-            let (verdict, node) = (Arc::clone(&verdict), node.clone());
+        let raw = service::place(member, &spec, "writer", spec.publishers, || {
+            // Not the node itself: its thread may be the one that drops this port.
+            let (verdict, member) = (Arc::clone(&verdict), Arc::clone(member));
             messages
                 .publisher_builder()
                 .initial_max_slice_len(len)
@@ -173,13 +175,13 @@ impl<S: Stream> Publisher<S> {
                 .override_sample_preallocation(move |worst_case| spec.messages().min(worst_case))
                 .backpressure_strategy(BackpressureStrategy::RetryUntilDelivered)
                 .set_backpressure_handler(move |state| {
-                    let end = if node.shutdown().requested() {
+                    let end = if member.shutdown().requested() {
                         INTERRUPTED
                     } else if state.elapsed_time >= patience {
                         OUT_OF_PATIENCE
                     } else {
                         // A reader that was killed is still counted until someone cleans up.
-                        node.clean_when_due();
+                        member.clean_when_due();
                         return BackpressureAction::Retry;
                     };
                     verdict.store(end, Ordering::Relaxed);
@@ -189,12 +191,12 @@ impl<S: Stream> Publisher<S> {
         })?;
         let segment = format!("_{}.data", raw.id().value());
         room::commit(spec.name, node.domain().prefix(), &segment)?;
-        let bell = service::place(node, &spec, "writer", spec.publishers, || {
+        let bell = service::place(member, &spec, "writer", spec.publishers, || {
             events.notifier_builder().create()
         })?;
         let raw = Arc::new(Tended(raw));
         let weak = Arc::downgrade(&raw);
-        node.register(weak);
+        member.register(weak);
         Ok(Self {
             raw,
             bell,
@@ -257,29 +259,32 @@ pub(crate) struct Subscriber<S: Stream> {
     raw: Arc<Tended<RawSubscriber<S>>>,
     ear: Listener<Service>,
     node: Node,
+    /// The request to stop has been passed on.
+    told: AtomicBool,
 }
 
 impl<S: Stream> Subscriber<S> {
     /// Opens the stream.
     pub(crate) fn open(node: &Node) -> Result<Self, PortError> {
-        let spec = S::SPEC;
+        let (spec, member) = (S::SPEC, node.membership());
         room::require(spec.name, 0)?;
-        let messages = service::messages::<S>(node)?;
-        let events = service::events(node, &spec)?;
+        let messages = service::messages::<S>(member)?;
+        let events = service::events(member, &spec)?;
         // The ear first: a message that arrives in between is then heard as well as received.
-        let ear = service::place(node, &spec, "reader", spec.subscribers, || {
+        let ear = service::place(member, &spec, "reader", spec.subscribers, || {
             events.listener_builder().create()
         })?;
-        let raw = service::place(node, &spec, "reader", spec.subscribers, || {
+        let raw = service::place(member, &spec, "reader", spec.subscribers, || {
             messages.subscriber_builder().create()
         })?;
         let raw = Arc::new(Tended(raw));
         let weak = Arc::downgrade(&raw);
-        node.register(weak);
+        member.register(weak);
         Ok(Self {
             raw,
             ear,
             node: node.clone(),
+            told: AtomicBool::new(false),
         })
     }
 
@@ -291,7 +296,7 @@ impl<S: Stream> Subscriber<S> {
             match self.raw.0.receive() {
                 Ok(sample) => return Ok(sample),
                 Err(error @ ReceiveError::ConnectionFailure(_)) => {
-                    self.node.clean();
+                    self.node.membership().clean();
                     refused = Some(error);
                 }
                 Err(error) => return Err(system::<S>("receiving", error)),
@@ -310,11 +315,17 @@ impl<S: Stream> Subscriber<S> {
         Ok(newest)
     }
 
+    /// Whether this process was asked to stop.
+    pub(crate) fn is_stopping(&self) -> bool {
+        self.node.shutdown().requested()
+    }
+
     /// Sleeps until something was sent, the time is over, or this process should stop; ticks.
     pub(crate) fn wait(&self, timeout: Duration) -> Result<Wake, PortError> {
         let deadline = Instant::now() + timeout;
         loop {
-            if self.node.shutdown().requested() {
+            // Said once: a process that still brings something to its end waits on as before.
+            if self.node.shutdown().requested() && !self.told.swap(true, Ordering::Relaxed) {
                 return Ok(Wake::Shutdown);
             }
             self.node.tick();

@@ -6,7 +6,9 @@
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, Once, PoisonError, Weak};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use iceoryx2::prelude::{
@@ -107,10 +109,87 @@ pub(crate) trait Tend: Send + Sync {
 }
 
 /// This process as a member of a domain. Clones are the same member; the last one leaves.
+///
+/// A thread ticks every [`TICK`], so that the dead are cleaned up and new peers connected also while
+/// this process computes.
 #[derive(Clone)]
-pub struct Node(Arc<Membership>);
+pub struct Node(Arc<Presence>);
 
-struct Membership {
+struct Presence {
+    membership: Arc<Membership>,
+    /// Dropping the sender ends the thread.
+    keeper: Option<(Sender<()>, JoinHandle<()>)>,
+}
+
+impl Drop for Presence {
+    fn drop(&mut self) {
+        // Waited for: the thread must not be the one that leaves, when the process is gone already.
+        if let Some((sender, keeper)) = self.keeper.take() {
+            drop(sender);
+            let _ = keeper.join();
+        }
+    }
+}
+
+impl fmt::Debug for Node {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter
+            .debug_struct("Node")
+            .field("role", &self.0.membership.role)
+            .field("incarnation", &self.incarnation())
+            .finish_non_exhaustive()
+    }
+}
+
+impl Node {
+    /// Joins `domain` under a role such as `learner` or `actor-3`, and cleans up after the dead.
+    pub fn join(domain: &Domain, role: &str, shutdown: &Shutdown) -> Result<Self, PortError> {
+        let membership = Arc::new(Membership::new(domain, role, shutdown)?);
+        let (sender, ending) = channel();
+        let kept = Arc::clone(&membership);
+        let keeper = std::thread::Builder::new()
+            .name("presence".to_owned())
+            .spawn(move || {
+                while ending.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
+                    kept.tick();
+                }
+            })
+            .map_err(|error| PortError::Join {
+                role: role.to_owned(),
+                cause: format!("starting its thread: {error}"),
+            })?;
+        let keeper = Some((sender, keeper));
+        Ok(Self(Arc::new(Presence { membership, keeper })))
+    }
+
+    /// Number of this life of the process: a restarted process has a larger one.
+    pub fn incarnation(&self) -> u64 {
+        self.0.membership.incarnation
+    }
+
+    /// The request to stop that ends the waiting of this process.
+    pub fn shutdown(&self) -> &Shutdown {
+        &self.0.membership.shutdown
+    }
+
+    /// The domain that was joined.
+    pub fn domain(&self) -> &Domain {
+        &self.0.membership.domain
+    }
+
+    /// If the last look is [`TICK`] ago, cleans up after dead processes and connects ports to new
+    /// peers; otherwise returns at once. A thread of this process and every waiting call do it too.
+    pub fn tick(&self) {
+        self.0.membership.tick();
+    }
+
+    pub(crate) fn membership(&self) -> &Arc<Membership> {
+        &self.0.membership
+    }
+}
+
+/// What the ports and the thread of a node share.
+pub(crate) struct Membership {
     handle: iceoryx2::node::Node<Service>,
     ports: Mutex<Vec<Weak<dyn Tend>>>,
     domain: Domain,
@@ -122,19 +201,8 @@ struct Membership {
     due: AtomicU64,
 }
 
-impl fmt::Debug for Node {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter
-            .debug_struct("Node")
-            .field("role", &self.0.role)
-            .field("incarnation", &self.0.incarnation)
-            .finish_non_exhaustive()
-    }
-}
-
-impl Node {
-    /// Joins `domain` under a role such as `learner` or `actor-3`, and cleans up after the dead.
-    pub fn join(domain: &Domain, role: &str, shutdown: &Shutdown) -> Result<Self, PortError> {
+impl Membership {
+    fn new(domain: &Domain, role: &str, shutdown: &Shutdown) -> Result<Self, PortError> {
         static QUIET: Once = Once::new();
         // What it calls a warning is often the other side ending, which we report ourselves.
         QUIET.call_once(|| set_log_level_from_env_or(LogLevel::Error));
@@ -154,7 +222,7 @@ impl Node {
             .create::<Service>()
             .map_err(|error| refused(format!("{error:?}")))?;
         let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH);
-        Ok(Self(Arc::new(Membership {
+        Ok(Self {
             handle,
             ports: Mutex::new(Vec::new()),
             domain: domain.clone(),
@@ -164,45 +232,27 @@ impl Node {
             incarnation: since_epoch.map_or(1, |time| time.as_nanos() as u64),
             joined: Instant::now(),
             due: AtomicU64::new(0),
-        })))
+        })
     }
 
-    /// Number of this life of the process: a restarted process has a larger one.
-    pub fn incarnation(&self) -> u64 {
-        self.0.incarnation
-    }
-
-    /// The request to stop that ends the waiting of this process.
-    pub fn shutdown(&self) -> &Shutdown {
-        &self.0.shutdown
-    }
-
-    /// The domain that was joined.
-    pub fn domain(&self) -> &Domain {
-        &self.0.domain
-    }
-
-    /// Once per [`TICK`], cleans up after dead processes and connects ports to new peers; otherwise
-    /// returns at once. Every waiting call of a port does this itself; call it where a process works
-    /// for long without waiting.
-    pub fn tick(&self) {
+    /// Both halves of a tick, when due.
+    pub(crate) fn tick(&self) {
         if self.clean_when_due() {
             self.tend_ports();
         }
     }
 
-    /// The half of [`Self::tick`] that touches no port: a port that is just sending holds its own
-    /// lock and may call only this. Returns whether it was due.
+    /// The half of a tick that touches no port: a port that is just sending holds its own lock and
+    /// may call only this. Returns whether it was due.
     pub(crate) fn clean_when_due(&self) -> bool {
-        let now = self.0.joined.elapsed().as_millis() as u64;
-        let due = self.0.due.load(Ordering::Relaxed);
+        let now = self.joined.elapsed().as_millis() as u64;
+        let due = self.due.load(Ordering::Relaxed);
         let next = now + TICK.as_millis() as u64;
-        let ours = now >= due
-            && self
-                .0
-                .due
+        let exchange = |due| {
+            self.due
                 .compare_exchange(due, next, Ordering::Relaxed, Ordering::Relaxed)
-                .is_ok();
+        };
+        let ours = now >= due && exchange(due).is_ok();
         if ours {
             self.clean();
         }
@@ -211,26 +261,34 @@ impl Node {
 
     /// Cleans up after dead processes now.
     pub(crate) fn clean(&self) {
-        let state = self.0.handle.try_cleanup_dead_nodes();
+        let state = self.handle.try_cleanup_dead_nodes();
         if state.cleanups > 0 {
             tracing::info!(dead = state.cleanups, "cleaned up after dead processes");
         }
     }
 
     pub(crate) fn handle(&self) -> &iceoryx2::node::Node<Service> {
-        &self.0.handle
+        &self.handle
+    }
+
+    pub(crate) fn shutdown(&self) -> &Shutdown {
+        &self.shutdown
+    }
+
+    pub(crate) fn domain(&self) -> &Domain {
+        &self.domain
     }
 
     /// Adds a port that wants to look after its connections on every tick.
     pub(crate) fn register(&self, port: Weak<dyn Tend>) {
-        let mut ports = self.0.ports.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut ports = self.ports.lock().unwrap_or_else(PoisonError::into_inner);
         ports.retain(|port| port.strong_count() > 0);
         ports.push(port);
     }
 
     fn tend_ports(&self) {
         // Taken only while another thread of this process does the same.
-        let Ok(ports) = self.0.ports.try_lock() else {
+        let Ok(ports) = self.ports.try_lock() else {
             return;
         };
         for port in ports.iter().filter_map(Weak::upgrade) {

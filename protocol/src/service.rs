@@ -11,7 +11,7 @@ use iceoryx2::service::Service as _;
 use iceoryx2::service::port_factory::{event, publish_subscribe};
 
 use crate::port::{PortError, Service};
-use crate::presence::Node;
+use crate::presence::Membership;
 use crate::stream::{MAX_NODES, Spec, Stream};
 
 /// Longest time in which a place held by the dead, or a service half made, must come free.
@@ -28,11 +28,12 @@ pub(crate) type Messages<S> =
     publish_subscribe::PortFactory<Service, [<S as Stream>::Item], <S as Stream>::Header>;
 
 /// Opens or creates the messages of a stream.
-pub(crate) fn messages<S: Stream>(node: &Node) -> Result<Messages<S>, PortError> {
+pub(crate) fn messages<S: Stream>(member: &Membership) -> Result<Messages<S>, PortError> {
     let spec = S::SPEC;
-    let (name, version) = identity(node, &spec)?;
-    persist(node, &spec, MessagingPattern::PublishSubscribe, || {
-        node.handle()
+    let (name, version) = identity(member, &spec)?;
+    persist(member, &spec, MessagingPattern::PublishSubscribe, || {
+        member
+            .handle()
             .service_builder(&name)
             .publish_subscribe::<[S::Item]>()
             .user_header::<S::Header>()
@@ -48,10 +49,14 @@ pub(crate) fn messages<S: Stream>(node: &Node) -> Result<Messages<S>, PortError>
 }
 
 /// Opens or creates the event of a stream: rung after each message, and when a writer comes or goes.
-pub(crate) fn events(node: &Node, spec: &Spec) -> Result<event::PortFactory<Service>, PortError> {
-    let (name, version) = identity(node, spec)?;
-    persist(node, spec, MessagingPattern::Event, || {
-        node.handle()
+pub(crate) fn events(
+    member: &Membership,
+    spec: &Spec,
+) -> Result<event::PortFactory<Service>, PortError> {
+    let (name, version) = identity(member, spec)?;
+    persist(member, spec, MessagingPattern::Event, || {
+        member
+            .handle()
             .service_builder(&name)
             .event()
             .max_notifiers(spec.publishers)
@@ -67,7 +72,7 @@ pub(crate) fn events(node: &Node, spec: &Spec) -> Result<event::PortFactory<Serv
 
 /// Takes one of `limit` places, waiting until the dead have given theirs back.
 pub(crate) fn place<P, E: Debug>(
-    node: &Node,
+    member: &Membership,
     spec: &Spec,
     side: &'static str,
     limit: usize,
@@ -87,14 +92,14 @@ pub(crate) fn place<P, E: Debug>(
                 refused(spec, "creating a port", error)
             });
         }
-        node.clean();
+        member.clean();
         std::thread::sleep(RETRY);
     }
 }
 
 /// Repeats `open` while others create, leave or are cleaned up.
 fn persist<F, E: Debug>(
-    node: &Node,
+    member: &Membership,
     spec: &Spec,
     pattern: MessagingPattern,
     mut open: impl FnMut() -> Result<F, E>,
@@ -105,8 +110,8 @@ fn persist<F, E: Debug>(
             Ok(factory) => return Ok(factory),
             Err(error) => format!("{error:?}"),
         };
-        let ours = node.domain().version();
-        if let Some(theirs) = version_in_use(node, spec, pattern)
+        let ours = member.domain().version();
+        if let Some(theirs) = version_in_use(member, spec, pattern)
             && theirs != ours.to_string()
         {
             let stream = spec.name;
@@ -119,18 +124,21 @@ fn persist<F, E: Debug>(
         if Instant::now() >= deadline {
             return Err(refused(spec, "opening", error));
         }
-        node.clean();
+        member.clean();
         std::thread::sleep(RETRY);
     }
 }
 
-fn identity(node: &Node, spec: &Spec) -> Result<(ServiceName, AttributeVerifier), PortError> {
+fn identity(
+    member: &Membership,
+    spec: &Spec,
+) -> Result<(ServiceName, AttributeVerifier), PortError> {
     let failed = |error: String| refused(spec, "naming", error);
     let name = ServiceName::new(spec.name).map_err(|error| failed(format!("{error:?}")))?;
     let key = VERSION_KEY
         .try_into()
         .map_err(|error| failed(format!("{error:?}")))?;
-    let value = node.domain().version().to_string();
+    let value = member.domain().version().to_string();
     let value = value
         .as_str()
         .try_into()
@@ -141,9 +149,9 @@ fn identity(node: &Node, spec: &Spec) -> Result<(ServiceName, AttributeVerifier)
     Ok((name, version))
 }
 
-fn version_in_use(node: &Node, spec: &Spec, pattern: MessagingPattern) -> Option<String> {
+fn version_in_use(member: &Membership, spec: &Spec, pattern: MessagingPattern) -> Option<String> {
     let name = ServiceName::new(spec.name).ok()?;
-    let details = Service::details(&name, node.handle().config(), pattern).ok()??;
+    let details = Service::details(&name, member.handle().config(), pattern).ok()??;
     let key = VERSION_KEY.try_into().ok()?;
     let value = details.static_details.attributes().key_value(&key, 0)?;
     Some(value.to_string())

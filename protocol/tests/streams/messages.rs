@@ -127,7 +127,6 @@ fn a_late_actor_gets_the_newest_weights_and_only_those() {
 
     let subscriber = WeightsSubscriber::new(&actor).unwrap();
     let weights = eventually("the newest weights", || {
-        learner.tick();
         subscriber.wait(Duration::from_millis(10)).unwrap();
         subscriber.newest().unwrap()
     });
@@ -225,6 +224,27 @@ fn the_learner_waits_for_the_answer_to_its_own_report() {
     assert_eq!(directive.sequence, 2);
     assert_eq!(directive.rule(), Ok(Rule::Guided { ceiling: 0.5 }));
     answering.join().unwrap();
+
+    // Asked to stop, the learner waits no longer than a second for the last word.
+    learner.shutdown().request();
+    let answer = subscriber.wait_for(me, 8, 100 * DEADLINE).unwrap();
+    assert_eq!(answer, Answer::Shutdown);
+}
+
+#[test]
+fn a_request_to_stop_is_said_once_and_then_waiting_goes_on() {
+    let run = Run::new();
+    let (learner, actor) = (run.join("learner"), run.join("actor-0"));
+    let subscriber = RolloutSubscriber::new(&learner).unwrap();
+    learner.shutdown().request();
+    assert_eq!(subscriber.wait(DEADLINE).unwrap(), Wake::Shutdown);
+    // A learner that brings its iteration to an end neither spins nor misses a rollout.
+    let short = Duration::from_millis(5);
+    assert_eq!(subscriber.wait(short).unwrap(), Wake::Timeout);
+    let mut publisher = RolloutPublisher::new(&actor, 0, LAYOUT, DEADLINE).unwrap();
+    let loan = publisher.loan().unwrap();
+    publisher.send(loan, RolloutHeader::default()).unwrap();
+    assert_eq!(subscriber.wait(DEADLINE).unwrap(), Wake::Message);
 }
 
 #[test]
