@@ -120,6 +120,11 @@ impl Detector {
         &self.rewards
     }
 
+    /// β as of the newest reward; none before W indicators exist.
+    pub fn breakout_rate(&self) -> Option<f64> {
+        self.indicators.rate()
+    }
+
     /// 1 − p
     pub fn threshold(&self) -> f64 {
         self.threshold

@@ -49,15 +49,20 @@ impl Schedule {
         }
         let seen = self.detector.append(report.style_mean);
         self.advance(arm, &seen, &report);
-        Ok(Decision {
-            iteration: report.iteration,
+        Ok(self.decision(report.iteration))
+    }
+
+    /// What is in force, as the answer to this iteration: also when its report was refused.
+    pub fn decision(&self, iteration: u64) -> Decision {
+        Decision {
+            iteration,
             phase: self.phase,
             rule: self.rule(),
             granularity: self.granularity(),
-            breakout_rate: seen.breakout_rate,
+            breakout_rate: self.detector.breakout_rate(),
             threshold: self.detector.threshold(),
             trend: self.detector.rewards().slope(),
-        })
+        }
     }
 
     /// The rule in force: before any report, that of the first iteration.

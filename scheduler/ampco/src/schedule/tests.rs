@@ -316,6 +316,7 @@ fn a_refused_report_changes_nothing() {
             Err(ReportError::NegativeDeviation { .. })
         ));
         assert_eq!(schedule.observe(good), Ok(undisturbed[i]));
+        assert_eq!(schedule.decision(good.iteration), undisturbed[i]);
         assert_eq!(
             schedule.observe(good),
             Err(ReportError::OutOfOrder {

@@ -1,0 +1,205 @@
+//! The schedule put together again from what the run has recorded.
+//!
+//! A report that was sent while this process was away is gone, but its numbers are in `metrics.jsonl`. The schedule is a
+//! function of its configuration and of the reports in their order, so that observing the recorded ones anew gives the
+//! state, bit by bit, in which an uninterrupted scheduler would be.
+
+use ampco::{ConfigError, Report, Schedule, ScheduleConfig};
+use serde::Deserialize;
+
+/// The fields of a metrics line that decisions depend on; a number that was not finite is `null` there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+pub(crate) struct Record {
+    iteration: u64,
+    style_mean: Option<f64>,
+    style_std: Option<f64>,
+    task_mean: Option<f64>,
+}
+
+impl Record {
+    /// The report that the learner sent with this line.
+    fn report(&self) -> Report {
+        Report {
+            iteration: self.iteration,
+            style_mean: self.style_mean.unwrap_or(f64::NAN),
+            style_std: self.style_std.unwrap_or(f64::NAN),
+            task_mean: self.task_mean.unwrap_or(f64::NAN),
+        }
+    }
+}
+
+/// The schedule after the recorded iterations below `before`.
+///
+/// Where the record goes back, a learner was resumed: what it did anew replaces what was there. Reports that the
+/// schedule refuses are left out, as they were when they arrived.
+pub(crate) fn rebuild(
+    config: &ScheduleConfig,
+    records: &[Record],
+    before: u64,
+) -> Result<Schedule, ConfigError> {
+    let mut lasting: Vec<Report> = Vec::with_capacity(records.len());
+    for record in records.iter().filter(|record| record.iteration < before) {
+        while lasting
+            .last()
+            .is_some_and(|last| last.iteration >= record.iteration)
+        {
+            lasting.pop();
+        }
+        lasting.push(record.report());
+    }
+    let mut schedule = Schedule::new(config.clone())?;
+    for report in lasting {
+        let _refused_then_and_now = schedule.observe(report);
+    }
+    Ok(schedule)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use ampco::Decision;
+
+    use super::*;
+
+    /// Windows of five: they fill and switch within a few lines.
+    fn config() -> ScheduleConfig {
+        ScheduleConfig {
+            window: 5,
+            percentile: 0.5,
+            ..Default::default()
+        }
+    }
+
+    /// A reward that climbs for ten iterations and stays; thirds, so that no decimal is exact.
+    fn report(iteration: u64) -> Report {
+        let style_mean = iteration.min(10) as f64 / 3.0;
+        Report {
+            iteration,
+            style_mean,
+            style_std: 0.1 / 3.0,
+            task_mean: 0.5,
+        }
+    }
+
+    fn line(report: Report) -> String {
+        let Report {
+            iteration,
+            style_mean,
+            style_std,
+            task_mean,
+        } = report;
+        let line = serde_json::json!({
+            "iteration": iteration, "episode_length": 12.5, "style_mean": style_mean, "style_std": style_std,
+            "task_mean": task_mean
+        });
+        format!("{line}\n")
+    }
+
+    fn records(text: &str) -> Vec<Record> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("metrics.jsonl");
+        fs::write(&path, text).unwrap();
+        run::metrics::read(&path).unwrap()
+    }
+
+    /// What a scheduler decides from iteration `from` on that has observed 1 to `from` − 1 by now.
+    fn decisions(mut schedule: Schedule, from: u64) -> Vec<Decision> {
+        (from..=30)
+            .map(|iteration| schedule.observe(report(iteration)).unwrap())
+            .collect()
+    }
+
+    #[test]
+    fn a_rebuilt_schedule_decides_as_one_that_was_never_away() {
+        let uninterrupted = decisions(Schedule::new(config()).unwrap(), 1);
+        let switched = uninterrupted
+            .iter()
+            .position(Decision::just_switched)
+            .unwrap();
+        assert!(
+            (10..25).contains(&switched),
+            "the stream must switch between the restarts below"
+        );
+        for restart in [1, 2, 4, 8, 20, 29] {
+            let text: String = (1..restart)
+                .map(|iteration| line(report(iteration)))
+                .collect();
+            let rebuilt = rebuild(&config(), &records(&text), u64::MAX).unwrap();
+            assert_eq!(
+                decisions(rebuilt, restart),
+                uninterrupted[restart as usize - 1..],
+                "restart at {restart}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_torn_last_line_is_passed_over() {
+        let mut text: String = (1..=8).map(|iteration| line(report(iteration))).collect();
+        text.push_str(&line(report(9))[..20]);
+        assert_eq!(
+            rebuild(&config(), &records(&text), u64::MAX)
+                .unwrap()
+                .newest_iteration(),
+            Some(8)
+        );
+    }
+
+    #[test]
+    fn what_a_resumed_learner_does_anew_replaces_what_was_there() {
+        // 1 to 20 with a reward that would have switched, then again from 6 on.
+        let abandoned = (6..=20).map(|i| Report {
+            style_mean: 0.1,
+            ..report(i)
+        });
+        let whole = (1..=5)
+            .map(report)
+            .chain(abandoned)
+            .chain((6..=9).map(report));
+        let text: String = whole.map(line).collect();
+        let rebuilt = rebuild(&config(), &records(&text), u64::MAX).unwrap();
+        assert_eq!(
+            decisions(rebuilt, 10),
+            decisions(Schedule::new(config()).unwrap(), 1)[9..]
+        );
+    }
+
+    #[test]
+    fn only_what_lies_before_counts() {
+        let text: String = (1..=20).map(|iteration| line(report(iteration))).collect();
+        assert_eq!(
+            rebuild(&config(), &records(&text), 7)
+                .unwrap()
+                .newest_iteration(),
+            Some(6)
+        );
+        assert_eq!(
+            rebuild(&config(), &records(&text), 1)
+                .unwrap()
+                .newest_iteration(),
+            None
+        );
+    }
+
+    #[test]
+    fn a_line_without_a_finite_reward_is_left_out_as_its_report_was() {
+        let text = line(report(1))
+            + &line(Report {
+                style_mean: f64::NAN,
+                ..report(2)
+            })
+            + &line(report(3));
+        assert!(text.contains("null"));
+        let rebuilt = rebuild(&config(), &records(&text), u64::MAX).unwrap();
+        let mut live = Schedule::new(config()).unwrap();
+        live.observe(report(1)).unwrap();
+        live.observe(Report {
+            style_mean: f64::NAN,
+            ..report(2)
+        })
+        .unwrap_err();
+        live.observe(report(3)).unwrap();
+        assert_eq!(rebuilt.decision(3), live.decision(3));
+    }
+}
