@@ -1,0 +1,254 @@
+//! `ampco bench sim`: control steps per second of one core, with and without the policy.
+//!
+//! Separate because samples are the project's scarcest good: this says how fast they can come at
+//! all, by the code that an actor runs (`sim::Fleet`, `policy::Policy`) with nothing around it.
+
+use std::time::Instant;
+
+use anyhow::{Context, Result, ensure};
+use policy::{Policy, Shape};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use serde_json::{Value, json};
+use sim::{Fleet, RandomizationConfig, Starts, StepOut, TaskConfig};
+
+/// Standard deviation of the benchmark's actions; 0.25 rad per unit, as a policy in training moves.
+const EXPLORATION: f32 = 0.5;
+/// The kernel's account of this thread: nanoseconds on a core, then nanoseconds waiting for one.
+const ACCOUNT: &str = "/proc/thread-self/schedstat";
+
+/// Control steps per second of one core: physics and task alone, then with the policy.
+#[derive(Debug, clap::Args)]
+pub(crate) struct SimBench {
+    /// Seconds to measure each of the two for
+    #[arg(long, default_value_t = 5.0)]
+    seconds: f64,
+    /// Robots in the fleet
+    #[arg(long, default_value_t = 64)]
+    environments: usize,
+    /// Widths of the policy's hidden layers
+    #[arg(long, value_delimiter = ',', default_values_t = [256, 128, 64])]
+    hidden: Vec<usize>,
+    /// Simulate without the domain randomisation of Table I
+    #[arg(long)]
+    plain: bool,
+    /// Seed of the fleet and of the actions
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+impl SimBench {
+    pub(crate) fn run(&self) -> Result<Value> {
+        ensure!(
+            self.seconds > 0.0 && self.environments > 0,
+            "give --seconds and --environments above 0"
+        );
+        ensure!(
+            self.hidden.iter().all(|&width| width > 0),
+            "give --hidden widths above 0, for example 256,128,64"
+        );
+        let physics = self.measure(None)?;
+        let mut policy = self.policy()?;
+        let acting = self.measure(Some(&mut policy))?;
+        Ok(json!({
+            "control_steps_per_second_per_core": physics.per_second(physics.wall),
+            "with_inference_per_second_per_core": acting.per_second(acting.wall),
+            // On a machine that others use, the time on the core says more than the clock.
+            "control_steps_per_cpu_second": physics.cpu.map(|cpu| physics.per_second(cpu)),
+            "with_inference_per_cpu_second": acting.cpu.map(|cpu| acting.per_second(cpu)),
+            "microseconds_per_physics_step":
+                1e6 * physics.wall / (physics.steps * sim::world::SUBSTEPS) as f64,
+            "inference_share": acting.inference / acting.wall,
+            "control_steps_measured": physics.steps,
+            "wall_seconds": physics.wall,
+            "cpu_seconds": physics.cpu,
+            "resets": physics.resets,
+            "faults": physics.faults,
+            "environments": self.environments,
+            "hidden": self.hidden,
+            "randomization": !self.plain,
+            "physics_hz": 1.0 / sim::world::PHYSICS_STEP,
+            "policy_hz": 1.0 / sim::world::CONTROL_STEP,
+        }))
+    }
+
+    /// Random small weights: a standing robot's actions stay near zero, as an untrained policy's.
+    fn policy(&self) -> Result<Policy> {
+        let shape = Shape::new(&self.hidden);
+        let mut flat = vec![0.0; shape.len()];
+        let mut random = Pcg64Mcg::seed_from_u64(self.seed);
+        let (mean, deviation) = (policy::INPUTS, 2 * policy::INPUTS);
+        let sigma = deviation + policy::OUTPUTS;
+        flat[mean..deviation].fill(1.0);
+        flat[deviation..sigma].fill(EXPLORATION);
+        for weight in &mut flat[sigma..] {
+            *weight = 0.05 * (2.0 * random.random::<f32>() - 1.0);
+        }
+        let mut policy = Policy::new(shape);
+        policy.load(&flat).context("loading random weights")?;
+        Ok(policy)
+    }
+
+    /// Steps a new fleet for the time asked, with a policy or with random actions drawn beforehand.
+    fn measure(&self, mut policy: Option<&mut Policy>) -> Result<Measured> {
+        let randomization = if self.plain {
+            RandomizationConfig::none()
+        } else {
+            RandomizationConfig::default()
+        };
+        let n = self.environments;
+        let mut fleet = Fleet::new(
+            &TaskConfig::default(),
+            &randomization,
+            Starts::default(),
+            n,
+            self.seed,
+        )
+        .context("building the fleet")?;
+        let mut random = Pcg64Mcg::seed_from_u64(self.seed);
+        let mut rows = Rows::new(n);
+        let mut measured = Measured::default();
+        // Fresh robots stand; after half a second they do what random actions make them do.
+        for warm in [true, false] {
+            let (begun, account) = (Instant::now(), cpu_seconds());
+            loop {
+                let elapsed = begun.elapsed().as_secs_f64();
+                if warm && measured.steps >= 25 * n {
+                    measured = Measured::default();
+                    break;
+                }
+                if !warm && elapsed >= self.seconds {
+                    measured.wall = elapsed;
+                    measured.cpu = cpu_seconds().zip(account).map(|(now, then)| now - then);
+                    break;
+                }
+                let thinking = Instant::now();
+                match &mut policy {
+                    Some(policy) => policy.sample(
+                        fleet.observations(),
+                        n,
+                        &mut random,
+                        &mut rows.actions,
+                        &mut rows.means,
+                        &mut rows.log_probs,
+                    ),
+                    None => rows.shake(&mut random),
+                }
+                measured.inference += thinking.elapsed().as_secs_f64();
+                rows.step(&mut fleet);
+                measured.steps += n;
+                measured.resets += rows.ends.iter().filter(|end| **end != 0.0).count();
+            }
+        }
+        measured.faults = fleet.faults();
+        Ok(measured)
+    }
+}
+
+#[derive(Default)]
+struct Measured {
+    /// Control steps of one robot.
+    steps: usize,
+    wall: f64,
+    /// None where the kernel keeps no account.
+    cpu: Option<f64>,
+    inference: f64,
+    resets: usize,
+    faults: u64,
+}
+
+impl Measured {
+    fn per_second(&self, seconds: f64) -> f64 {
+        self.steps as f64 / seconds
+    }
+}
+
+/// Seconds that this thread has spent on a core.
+fn cpu_seconds() -> Option<f64> {
+    let account = std::fs::read_to_string(ACCOUNT).ok()?;
+    let nanoseconds: f64 = account.split_whitespace().next()?.parse().ok()?;
+    Some(1e-9 * nanoseconds)
+}
+
+/// Room for one step of the fleet.
+struct Rows {
+    actions: Vec<f32>,
+    means: Vec<f32>,
+    log_probs: Vec<f32>,
+    task_rewards: Vec<f32>,
+    energies: Vec<f32>,
+    tracking_errors: Vec<f32>,
+    ends: Vec<f32>,
+    episode_steps: Vec<f32>,
+    next_features: Vec<f32>,
+    foot_forces: Vec<f32>,
+    timeout_observations: Vec<f32>,
+}
+
+impl Rows {
+    fn new(n: usize) -> Self {
+        let row = |dimension: usize| vec![0.0; n * dimension];
+        Self {
+            actions: row(g1::ACTION),
+            means: row(g1::ACTION),
+            log_probs: row(1),
+            task_rewards: row(1),
+            energies: row(1),
+            tracking_errors: row(1),
+            ends: row(1),
+            episode_steps: row(1),
+            next_features: row(g1::FEATURES),
+            foot_forces: row(2),
+            timeout_observations: row(g1::OBSERVATION),
+        }
+    }
+
+    /// Random actions, uniform with the deviation of the exploring policy.
+    fn shake(&mut self, random: &mut Pcg64Mcg) {
+        let size = EXPLORATION * 3_f32.sqrt();
+        for action in &mut self.actions {
+            *action = size * (2.0 * random.random::<f32>() - 1.0);
+        }
+    }
+
+    fn step(&mut self, fleet: &mut Fleet) {
+        fleet.step(
+            &self.actions,
+            &mut StepOut {
+                task_rewards: &mut self.task_rewards,
+                energies: &mut self.energies,
+                tracking_errors: &mut self.tracking_errors,
+                ends: &mut self.ends,
+                episode_steps: &mut self.episode_steps,
+                next_features: &mut self.next_features,
+                foot_forces: &mut self.foot_forces,
+                timeout_observations: &mut self.timeout_observations,
+            },
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_short_measurement_counts_its_steps() {
+        let bench = SimBench {
+            seconds: 0.05,
+            environments: 2,
+            hidden: vec![8],
+            plain: false,
+            seed: 1,
+        };
+        let result = bench.run().unwrap();
+        let number = |key: &str| result[key].as_f64().unwrap();
+        // steps / wall by its definition, and the policy never makes it faster than free.
+        let expected = number("control_steps_measured") / number("wall_seconds");
+        assert_eq!(number("control_steps_per_second_per_core"), expected);
+        assert_eq!(number("control_steps_measured") % 2.0, 0.0);
+        assert!(number("with_inference_per_second_per_core") > 0.0);
+        assert!((0.0..1.0).contains(&number("inference_share")));
+        assert_eq!(number("faults"), 0.0);
+    }
+}
