@@ -184,9 +184,9 @@ impl RolloutLoan {
         self.layout.view_mut(self.sample.payload_mut())
     }
 
-    /// All fields, as far as they were written.
-    pub fn view(&self) -> RolloutView<'_> {
-        self.layout.view(self.sample.payload())
+    /// The whole block, [`RolloutLayout::len`] numbers, to be written.
+    pub fn numbers_mut(&mut self) -> &mut [f32] {
+        self.sample.payload_mut()
     }
 }
 
@@ -260,5 +260,10 @@ impl Rollout {
     /// All fields.
     pub fn view(&self) -> RolloutView<'_> {
         self.layout.view(self.sample.payload())
+    }
+
+    /// The whole block, [`RolloutLayout::len`] numbers.
+    pub fn numbers(&self) -> &[f32] {
+        self.sample.payload()
     }
 }
