@@ -26,19 +26,25 @@ pub fn run(run_dir: &Path) -> Result<()> {
     let config = crate::config::read(&folder)?;
     let shutdown = Shutdown::on_signals()?;
     let node = Node::join(&Domain::for_run(folder.path())?, "scheduler", &shutdown)?;
+    serve(&folder, config, &node)?;
+    info!("told to stop");
+    Ok(())
+}
+
+/// Answers reports until the node's shutdown is requested.
+fn serve(folder: &Folder, config: ScheduleConfig, node: &Node) -> Result<()> {
     let mut reports =
-        RewardSubscriber::new(&node).context("opening the stream of reward reports")?;
+        RewardSubscriber::new(node).context("opening the stream of reward reports")?;
     let mut directives =
-        DirectivePublisher::new(&node).context("opening the stream of directives")?;
+        DirectivePublisher::new(node).context("opening the stream of directives")?;
     // After the streams are open: a report that is sent meanwhile waits in them.
-    let mut desk = begin(&folder, config)?;
+    let mut desk = begin(folder, config)?;
     while reports.wait(SLEEP)? != Wake::Shutdown {
         while let Some(arrival) = reports.receive()? {
-            let decision = answer(&mut desk, &arrival, &folder)?;
+            let decision = answer(&mut desk, &arrival, folder)?;
             directives.send(Directive::new(arrival.report.learner, &decision))?;
         }
     }
-    info!("told to stop");
     Ok(())
 }
 
@@ -96,3 +102,6 @@ fn tell_switch(decision: &Decision) {
 fn records(folder: &Folder) -> Result<Vec<Record>> {
     run::metrics::read(&folder.metrics_path()).context("reading the run's metrics")
 }
+
+#[cfg(test)]
+mod tests;
