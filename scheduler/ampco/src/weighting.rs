@@ -57,6 +57,7 @@ pub enum RuleError {
 
 impl Rule {
     /// Weights for one pair of rewards: of a transition, or the batch's means (see [`crate::Granularity`]).
+    #[inline]
     pub fn weights(&self, style_reward: f32, task_reward: f32) -> Weights {
         match *self {
             Self::Fixed { style_weight } => Weights::from_style(style_weight),
@@ -68,6 +69,43 @@ impl Rule {
             }
             Self::Bounded { lower, upper } => {
                 Weights::from_style(roger::style_weight(style_reward, lower, upper))
+            }
+        }
+    }
+
+    /// Blended reward of each transition, weighted by its own rewards: [`Self::weights`] and Eq. 1 over slices of equal
+    /// length. The rule is looked at once, so that the loop over the transitions runs on vectors.
+    pub fn blend_each(&self, style_rewards: &[f32], task_rewards: &[f32], blended: &mut [f32]) {
+        /// Compiled anew for each rule, of which `weights` then sees only the one.
+        #[inline(always)]
+        fn each(
+            rewards: (&[f32], &[f32]),
+            blended: &mut [f32],
+            weights: impl Fn(f32, f32) -> Weights,
+        ) {
+            assert_eq!(
+                (rewards.0.len(), rewards.1.len()),
+                (blended.len(), blended.len())
+            );
+            for ((blended, &style), &task) in blended.iter_mut().zip(rewards.0).zip(rewards.1) {
+                *blended = weights(style, task).blend(task, style);
+            }
+        }
+        let rewards = (style_rewards, task_rewards);
+        match *self {
+            Self::Fixed { style_weight } => each(rewards, blended, |s, t| {
+                Self::Fixed { style_weight }.weights(s, t)
+            }),
+            Self::Guided { ceiling } => each(rewards, blended, |s, t| {
+                Self::Guided { ceiling }.weights(s, t)
+            }),
+            Self::AdaMimic { ceiling } => each(rewards, blended, |s, t| {
+                Self::AdaMimic { ceiling }.weights(s, t)
+            }),
+            Self::Bounded { lower, upper } => {
+                each(rewards, blended, |s, t| {
+                    Self::Bounded { lower, upper }.weights(s, t)
+                });
             }
         }
     }
@@ -113,6 +151,28 @@ mod tests {
             .style(),
             0.5
         ); // halfway
+    }
+
+    #[test]
+    fn a_batch_is_blended_as_its_transitions_are() {
+        let (style, task): (Vec<f32>, Vec<f32>) = (0..37)
+            .map(|i| (i as f32 / 36.0, 1.0 - i as f32 / 50.0))
+            .unzip();
+        for rule in [
+            Rule::Fixed { style_weight: 0.7 },
+            Rule::Guided { ceiling: 0.8 },
+            Rule::AdaMimic { ceiling: 0.9 },
+            Rule::Bounded {
+                lower: 0.25,
+                upper: 0.75,
+            },
+        ] {
+            let mut blended = vec![0.0; 37];
+            rule.blend_each(&style, &task, &mut blended);
+            for ((blended, &style), &task) in blended.iter().zip(&style).zip(&task) {
+                assert_eq!(*blended, rule.weights(style, task).blend(task, style));
+            }
+        }
     }
 
     #[test]

@@ -13,6 +13,7 @@ impl Weights {
     pub const EQUAL: Self = Self { style: 0.5 };
 
     /// Weights with this style share; a value outside \[0, 1\] becomes the nearer end.
+    #[inline]
     pub fn from_style(style: f32) -> Self {
         Self {
             style: style.clamp(0.0, 1.0),
@@ -20,21 +21,25 @@ impl Weights {
     }
 
     /// Weights with this task share; a value outside \[0, 1\] becomes the nearer end.
+    #[inline]
     pub fn from_task(task: f32) -> Self {
         Self::from_style(1.0 - task)
     }
 
     /// wˢ
+    #[inline]
     pub fn style(self) -> f32 {
         self.style
     }
 
     /// wᴳ = 1 − wˢ   (Eq. 2)
+    #[inline]
     pub fn task(self) -> f32 {
         1.0 - self.style
     }
 
     /// Reward of a transition: r = wᴳ·rᴳ + wˢ·rˢ   (Eq. 1)
+    #[inline]
     pub fn blend(self, task_reward: f32, style_reward: f32) -> f32 {
         self.task() * task_reward + self.style * style_reward
     }

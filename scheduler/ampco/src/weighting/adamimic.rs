@@ -6,6 +6,7 @@
 /// Task weight of AdaMimic:  wᴳ = min((rᴳ / R*)², 1)   (Eq. 9 with rᴳ for rˢ)
 ///
 /// Task performance admits more task, however the motion looks.
+#[inline]
 pub fn task_weight(task_reward: f32, ceiling: f32) -> f32 {
     (task_reward / ceiling).powi(2).min(1.0)
 }

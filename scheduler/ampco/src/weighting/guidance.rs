@@ -11,6 +11,7 @@ const SMALLEST_CEILING: f64 = 1e-6;
 /// Task weight of Adaptive Imitation Guidance:  wᴳ = min((rˢ / R*)², 1)   (Eq. 9)
 ///
 /// The task is allowed in only as far as the motion already convinces the discriminator.
+#[inline]
 pub fn task_weight(style_reward: f32, ceiling: f32) -> f32 {
     (style_reward / ceiling).powi(2).min(1.0)
 }

@@ -7,6 +7,7 @@
 ///
 /// At the upper bound the task has everything; a policy that sinks to the lower bound is led back by style alone.
 /// `lower < upper` is the caller's promise, see [`crate::Rule::validate`].
+#[inline]
 pub fn style_weight(style_reward: f32, lower: f32, upper: f32) -> f32 {
     ((upper - style_reward) / (upper - lower)).clamp(0.0, 1.0)
 }
