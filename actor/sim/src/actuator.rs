@@ -91,10 +91,10 @@ pub(crate) fn drive(gains: &Gains, targets: &[f32; JOINTS], multibody: &mut Mult
 
 /// Positive work of a physics step, J: E = Σᵢ max(0, τᵢ·q̇ᵢ)·dt (III-F).
 ///
-/// Summed per physics step, not once per control step with dt = 0.02 s: within a control step the
-/// target stands still while the torque follows the joint, so the sign of the power changes inside
-/// it, and a sample at its end would miss or invent a quarter of the strokes. τ is the torque that
-/// acted and q̇ the speed over which it acted (the positions moved by q̇⁺·dt).
+/// Summed per physics step (dt = 5 ms) and not once per control step (dt = 20 ms): the target stands
+/// still within a control step while the torque follows the joint, so the power can change its sign
+/// inside it, and one sample would count all of it or nothing. τ is the torque that acted and q̇ the
+/// speed over which it acted (the positions moved by q̇⁺·dt), so this is the work that was done.
 pub(crate) fn positive_work(torques: &Torques, multibody: &Multibody, dt: f32) -> f32 {
     let velocity = multibody.generalized_velocity();
     (0..JOINTS)
@@ -125,8 +125,9 @@ pub(crate) fn position(multibody: &Multibody, joint: usize) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::Engine;
     use crate::model::Variation;
-    use crate::world::{Engine, PHYSICS_STEP, World};
+    use crate::world::{PHYSICS_STEP, World};
     use g1::RobotState;
 
     /// In the air, so that nothing but the motors and gravity acts.

@@ -4,11 +4,12 @@
 //! told here once, for one robot, while the fleet only lines robots up.
 
 use crate::actuator::{self, Gains};
+use crate::engine::Engine;
 use crate::model::Variation;
 use crate::randomization::RandomizationConfig;
 use crate::start::{self, Starts};
 use crate::task::{self, End, TaskConfig};
-use crate::world::{Engine, Exertion, World};
+use crate::world::{Exertion, World};
 use g1::{JOINTS, RobotState, observation};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;

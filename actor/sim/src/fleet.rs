@@ -5,12 +5,13 @@
 
 use crate::actuator::Gains;
 use crate::config::{self, Invalid};
+use crate::engine::Engine;
 use crate::env::{Environment, Setting};
 use crate::model::Variation;
 use crate::randomization::RandomizationConfig;
 use crate::start::Starts;
 use crate::task::{End, TaskConfig};
-use crate::world::{Engine, World};
+use crate::world::World;
 use g1::{ACTION, FEATURES, OBSERVATION, RobotState, observation};
 use serde::{Deserialize, Serialize};
 

@@ -14,11 +14,13 @@
 //! | domain randomisation (Table I) | [`randomization`] |
 //! | motors: position control, torque limits, energy (III-F) | [`actuator`] |
 //! | a robot in rapier, state in and out | [`world`], [`model`] |
+//! | rapier's settings | [`engine`] |
 #![forbid(unsafe_code)]
 
 pub mod actuator;
 pub mod command;
 pub mod config;
+pub mod engine;
 mod env;
 pub mod fleet;
 pub mod model;
@@ -30,9 +32,10 @@ pub mod world;
 pub use actuator::Gains;
 pub use command::CommandConfig;
 pub use config::Invalid;
+pub use engine::Engine;
 pub use fleet::{Fleet, SimError, StepOut};
 pub use model::Variation;
 pub use randomization::RandomizationConfig;
 pub use start::{StartConfig, Starts};
 pub use task::TaskConfig;
-pub use world::{Engine, Exertion, World};
+pub use world::{Exertion, World};

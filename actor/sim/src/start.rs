@@ -57,6 +57,21 @@ pub struct Starts {
     pub cumulative_weights: Vec<f32>,
 }
 
+impl FromIterator<(RobotState, [f32; 3], f32)> for Starts {
+    /// From frames with the command that fits and the weight of each.
+    fn from_iter<I: IntoIterator<Item = (RobotState, [f32; 3], f32)>>(frames: I) -> Self {
+        let mut starts = Self::default();
+        let mut sum = 0.0;
+        for (state, command, weight) in frames {
+            sum += weight;
+            starts.states.push(state);
+            starts.commands.push(command);
+            starts.cumulative_weights.push(sum);
+        }
+        starts
+    }
+}
+
 impl Starts {
     /// Checks that the three lists belong together.
     pub fn validate(&self) -> Result<(), Invalid> {

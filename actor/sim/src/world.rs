@@ -4,21 +4,21 @@
 //! robot (torques, tasks, resets) is said elsewhere. One robot per world: many in one world cost
 //! more each.
 
+mod build;
+#[cfg(test)]
+mod tests;
+
 use crate::actuator::{self, Gains};
-use crate::model::{self, Variation};
-use g1::{BODIES, JOINT_TABLE, JOINTS, LEFT_FOOT, RIGHT_FOOT, RobotState, links};
+use crate::engine::Engine;
+use crate::model;
+use g1::{BODIES, JOINTS, RobotState, links};
 use nalgebra::Vector3;
 use rapier3d::dynamics::{
-    CCDSolver, CoefficientCombineRule, ImpulseJointSet, IntegrationParameters, IslandManager,
-    Multibody, MultibodyJointHandle, MultibodyJointSet, RigidBodyBuilder, RigidBodyHandle,
-    RigidBodySet, SoftBodySet,
+    ImpulseJointSet, IslandManager, Multibody, MultibodyJointHandle, MultibodyJointSet,
+    RigidBodyHandle, RigidBodySet, SoftBodySet,
 };
-use rapier3d::geometry::{
-    BroadPhaseBvh, ColliderBuilder, ColliderHandle, ColliderSet, Group, InteractionGroups,
-    InteractionTestMode, NarrowPhase,
-};
+use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase};
 use rapier3d::math::{Pose, Vector};
-use rapier3d::pipeline::PhysicsPipeline;
 use serde::{Deserialize, Serialize};
 
 /// Length of a physics step, s: 200 Hz (III-A).
@@ -38,51 +38,6 @@ const DEGREES: usize = BASE_DEGREES + JOINTS;
 pub(crate) const HINGE_AXIS: usize = 3;
 /// Beyond these speeds (m/s, rad/s) a state is taken for a blown-up one.
 const SPEED_LIMIT: f32 = 1_000.0;
-
-/// rapier's scratch space and settings: no state of any robot, shared by all worlds of a thread.
-pub struct Engine {
-    pipeline: PhysicsPipeline,
-    ccd: CCDSolver,
-    parameters: IntegrationParameters,
-}
-
-impl Engine {
-    /// At the project's step of 5 ms.
-    pub fn new() -> Self {
-        Self::with_step(PHYSICS_STEP)
-    }
-
-    /// At another step, s, for references that tests compare with.
-    pub fn with_step(dt: f32) -> Self {
-        Self {
-            pipeline: PhysicsPipeline::new(),
-            ccd: CCDSolver::new(),
-            parameters: IntegrationParameters {
-                dt,
-                num_solver_iterations: 1,
-                num_internal_pgs_iterations: 1,
-                num_internal_stabilization_iterations: 1,
-                max_ccd_substeps: 0,
-                // Both look at what the last steps did instead of at the feet; with one box per
-                // foot on a plane there is nothing to save.
-                contact_recycling: false,
-                contact_clustering: false,
-                ..IntegrationParameters::default()
-            },
-        }
-    }
-
-    /// Length of a physics step, s.
-    pub fn step(&self) -> f32 {
-        self.parameters.dt
-    }
-}
-
-impl Default for Engine {
-    fn default() -> Self {
-        Self::new()
-    }
-}
 
 /// What a control step took and felt.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -113,99 +68,6 @@ pub struct World {
 }
 
 impl World {
-    /// A robot in its tables' zero pose at the origin; place it with [`World::set_state`].
-    pub fn new(variation: &Variation) -> Self {
-        let mut bodies = RigidBodySet::new();
-        let mut colliders = ColliderSet::new();
-        let mut multibody_joints = MultibodyJointSet::new();
-        let links: [RigidBodyHandle; BODIES] = std::array::from_fn(|body| {
-            let mut link = RigidBodyBuilder::dynamic()
-                .additional_mass_properties(model::mass_properties(body, variation))
-                .can_sleep(false)
-                .build();
-            // rapier caps a body's turn at about 45° a step otherwise.
-            link.set_allow_fast_rotation(true);
-            bodies.insert(link)
-        });
-        // Feet touch the floor and nothing else touches anything.
-        let (floor_group, sole_group) = (Group::GROUP_1, Group::GROUP_2);
-        let groups = |member, with| InteractionGroups::new(member, with, InteractionTestMode::And);
-        let floor = colliders.insert(
-            ColliderBuilder::halfspace(nalgebra::Unit::new_unchecked(Vector::Z))
-                .friction(1.0)
-                .collision_groups(groups(floor_group, sole_group)),
-        );
-        let half = Vector3::from(links::FOOT_HALF_EXTENTS).cast::<f32>();
-        let soles = [LEFT_FOOT, RIGHT_FOOT].map(|foot| {
-            let sole = ColliderBuilder::cuboid(half.x, half.y, half.z)
-                .position(Pose::from_translation(model::vector(Vector3::from(
-                    links::FOOT_CENTRE,
-                ))))
-                .density(0.0)
-                .friction(variation.friction)
-                .friction_combine_rule(CoefficientCombineRule::Multiply)
-                .collision_groups(groups(sole_group, floor_group));
-            colliders.insert_with_parent(sole, links[foot], &mut bodies)
-        });
-        let mut robot = MultibodyJointHandle::invalid();
-        for (i, joint) in JOINT_TABLE.iter().enumerate() {
-            robot = multibody_joints
-                .insert(links[joint.parent], links[i + 1], model::hinge(joint), true)
-                .expect("the joint table is a tree");
-        }
-        for &link in &links {
-            bodies[link].recompute_mass_properties_from_colliders(&colliders);
-        }
-        let (multibody, _) = multibody_joints.get_mut(robot).expect("just inserted");
-        assert_eq!(
-            multibody.ndofs(),
-            DEGREES,
-            "a free base and one hinge a joint"
-        );
-        for (body, link) in multibody.links().enumerate() {
-            // Everything below counts on the order of the tables.
-            assert_eq!(link.rigid_body_handle(), links[body]);
-            assert_eq!(link.assembly_id(), if body == 0 { 0 } else { body + 5 });
-        }
-        multibody.set_self_contacts_enabled(false);
-        // The default of 0.1 on every angular degree of freedom brakes the free base, too.
-        multibody.damping_mut().fill(0.0);
-        for (degree, armature) in multibody.armature_mut().iter_mut().enumerate() {
-            *armature = model::armature(degree);
-        }
-        multibody.forward_kinematics(&bodies, true);
-        multibody.update_rigid_bodies(&mut bodies, true);
-        Self {
-            islands: IslandManager::new(),
-            broad_phase: BroadPhaseBvh::default(),
-            narrow_phase: NarrowPhase::new(),
-            bodies,
-            colliders,
-            impulse_joints: ImpulseJointSet::new(),
-            multibody_joints,
-            soft_bodies: SoftBodySet::default(),
-            links,
-            robot,
-            soles,
-            floor,
-            broken: false,
-        }
-    }
-
-    /// A fresh world from a template that was never stepped: bit-equal to `World::new(variation)`
-    /// and cheaper. A used world is no template: contacts and islands remember.
-    pub fn from_template(template: &Self, variation: &Variation) -> Self {
-        let mut world = template.clone();
-        let torso = &mut world.bodies[world.links[links::TORSO]];
-        torso
-            .set_additional_mass_properties(model::mass_properties(links::TORSO, variation), false);
-        torso.recompute_mass_properties_from_colliders(&world.colliders);
-        for sole in world.soles {
-            world.colliders[sole].set_friction(variation.friction);
-        }
-        world
-    }
-
     /// The robot's state.
     pub fn state(&self) -> RobotState {
         let multibody = self.multibody();
@@ -359,6 +221,3 @@ impl World {
         multibody
     }
 }
-
-#[cfg(test)]
-mod tests;

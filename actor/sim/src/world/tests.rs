@@ -1,7 +1,8 @@
 //! The robot against physics that can be worked out: falling, standing, swinging, tumbling.
 
 use super::*;
-use g1::{DEFAULT_POSE, LINK_TABLE};
+use crate::model::Variation;
+use g1::{DEFAULT_POSE, JOINT_TABLE, LEFT_FOOT, LINK_TABLE};
 use nalgebra::UnitQuaternion;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
