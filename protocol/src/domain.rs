@@ -147,25 +147,12 @@ impl Domain {
 
     /// Everyone who joined and did not leave, the dead included.
     pub fn members(&self) -> Result<Vec<Member>, DomainError> {
-        let mut members = Vec::new();
         if !self.root.exists() {
-            return Ok(members);
+            return Ok(Vec::new());
         }
-        let config = self.prepare()?;
-        let listed = iceoryx2::node::Node::<Service>::list(&config, |state| {
-            let (details, alive) = match &state {
-                NodeState::Alive(node) => (node.details().as_ref(), true),
-                NodeState::Dead(node) => (node.details().as_ref(), false),
-                NodeState::Inaccessible(_) | NodeState::Undefined(_) => (None, false),
-            };
-            members.push(Member {
-                role: details.map_or_else(String::new, |d| d.name().to_string()),
-                process: details.map_or(0, |d| d.process_id().value().unsigned_abs()),
-                alive,
-            });
-            CallbackProgression::Continue
-        });
-        listed.map_err(|error| self.middleware(format!("listing its members: {error:?}")))?;
+        let listed = members(&self.prepare()?)
+            .map_err(|error| self.middleware(format!("listing its members: {error}")))?;
+        let mut members: Vec<Member> = listed.into_iter().map(|listed| listed.member).collect();
         members.sort_by(|a, b| (&a.role, a.process).cmp(&(&b.role, b.process)));
         Ok(members)
     }
@@ -269,6 +256,35 @@ impl Domain {
         let root = self.root.clone();
         DomainError::Middleware { root, cause }
     }
+}
+
+/// A member and the name under which iceoryx2 keeps it.
+pub(crate) struct Listed {
+    pub(crate) id: String,
+    pub(crate) member: Member,
+}
+
+/// Everyone in the domain of `config`, in no order.
+pub(crate) fn members(config: &Config) -> Result<Vec<Listed>, String> {
+    let mut members = Vec::new();
+    iceoryx2::node::Node::<Service>::list(config, |state| {
+        let (id, details, alive) = match &state {
+            NodeState::Alive(node) => (node.id(), node.details().as_ref(), true),
+            NodeState::Dead(node) => (node.id(), node.details().as_ref(), false),
+            NodeState::Inaccessible(id) | NodeState::Undefined(id) => (id, None, false),
+        };
+        members.push(Listed {
+            id: id.value().to_string(),
+            member: Member {
+                role: details.map_or_else(String::new, |d| d.name().to_string()),
+                process: details.map_or(0, |d| d.process_id().value().unsigned_abs()),
+                alive,
+            },
+        });
+        CallbackProgression::Continue
+    })
+    .map_err(|error| format!("{error:?}"))?;
+    Ok(members)
 }
 
 fn files(path: &Path, source: io::Error) -> DomainError {

@@ -32,6 +32,7 @@ mod rollout;
 mod room;
 mod service;
 mod stream;
+mod watch;
 mod weights;
 
 pub use directive::{Answer, Directive, DirectivePublisher, DirectiveSubscriber, RuleError};

@@ -70,7 +70,7 @@ pub enum PortError {
     },
     /// Shared memory is full.
     #[error(
-        "stream {stream} needs {needed} bytes of shared memory, /dev/shm has {free} free: enlarge it \
+        "{stream}: {needed} bytes of shared memory needed, /dev/shm has {free} free: enlarge it \
          (docker run --shm-size, mount -o remount,size=… /dev/shm), lower the number of environments \
          per actor, or delete what dead runs left there (/dev/shm/ampco_*)"
     )]

@@ -1,8 +1,8 @@
 //! Being there: joining a domain, noticing the dead, hearing the request to stop.
 //!
 //! Separate because every process does this alike, whatever it writes or reads. A dead process
-//! leaves its places in the streams taken until someone cleans up after it; everyone does, about
-//! every [`TICK`].
+//! leaves its places in the streams taken until someone cleans up after it; everyone looks, every
+//! [`TICK`].
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -16,9 +16,10 @@ use iceoryx2::prelude::{
 };
 use signal_hook::consts::{SIGINT, SIGTERM};
 
-use crate::domain::Domain;
+use crate::domain::{self, Domain};
 use crate::port::{PortError, Service};
 use crate::room;
+use crate::watch::Watch;
 
 /// Time between two looks for dead processes and new readers.
 pub const TICK: Duration = Duration::from_millis(100);
@@ -192,6 +193,7 @@ impl Node {
 pub(crate) struct Membership {
     handle: iceoryx2::node::Node<Service>,
     ports: Mutex<Vec<Weak<dyn Tend>>>,
+    watch: Mutex<Watch>,
     domain: Domain,
     role: String,
     shutdown: Shutdown,
@@ -212,7 +214,7 @@ impl Membership {
             cause,
         };
         let config = domain.prepare()?;
-        room::require("domain", 0)?;
+        room::require("joining the run", 0)?;
         let name = NodeName::new(role).map_err(|error| refused(format!("{error:?}")))?;
         let handle = NodeBuilder::new()
             .name(&name)
@@ -225,6 +227,7 @@ impl Membership {
         Ok(Self {
             handle,
             ports: Mutex::new(Vec::new()),
+            watch: Mutex::new(Watch::new(domain.root().join("nodes"))),
             domain: domain.clone(),
             role: role.to_owned(),
             shutdown: shutdown.clone(),
@@ -253,10 +256,19 @@ impl Membership {
                 .compare_exchange(due, next, Ordering::Relaxed, Ordering::Relaxed)
         };
         let ours = now >= due && exchange(due).is_ok();
-        if ours {
+        if ours
+            && let Ok(mut watch) = self.watch.try_lock()
+            && watch.suspects(|| self.processes())
+        {
             self.clean();
         }
         ours
+    }
+
+    fn processes(&self) -> Vec<(String, u32)> {
+        let members = domain::members(self.handle.config()).unwrap_or_default();
+        let identify = |member: domain::Listed| (member.id, member.member.process);
+        members.into_iter().map(identify).collect()
     }
 
     /// Cleans up after dead processes now.
