@@ -1,1 +1,63 @@
-//! amp
+//! Adversarial Motion Priors: section II-A of the paper. Batches in, a better policy and a report out.
+//!
+//! [`Learning::iterate`] is one iteration: score the transitions with the discriminator (Eq. 7), blend the rewards by the
+//! rule of the scheduler (Eq. 1, 2), estimate advantages, improve the policy by PPO, then train the discriminator on
+//! expert and policy transitions (Eq. 3–6). The crate is pure: generators are seeded by the caller, the clock is passed
+//! in, and the same batches give the same bits.
+//!
+//! | equation | item |
+//! | --- | --- |
+//! | 1, 2 blended reward | [`ampco::Weights`], applied by [`blend::blend`] |
+//! | 3, expert loss | [`losses::expert_loss`] |
+//! | 4, policy loss | [`losses::policy_loss`] |
+//! | 5, gradient penalty | [`losses::gradient_penalty`] |
+//! | 6, combined loss | [`losses::amp_loss`] |
+//! | 7, style reward | [`style::style_reward`] |
+//!
+//! | subject | module |
+//! | --- | --- |
+//! | what rollouts bring | [`batch`] |
+//! | generalised advantage estimation | [`gae`] |
+//! | the clipped surrogate and its companions | [`surrogate`] |
+//! | one PPO update | [`ppo`] |
+//! | one discriminator update, and the transitions it remembers | [`discrimination`], [`replay`] |
+//! | how wide actions are drawn | [`exploration`] |
+//! | what is known of the robot | [`robot`] |
+#![forbid(unsafe_code)]
+
+pub mod batch;
+pub mod blend;
+pub mod config;
+pub mod discrimination;
+mod error;
+pub mod exploration;
+pub mod gae;
+mod inference;
+mod learning;
+pub mod losses;
+mod minibatch;
+pub mod ppo;
+pub mod replay;
+mod report;
+pub mod robot;
+mod saved;
+pub mod style;
+pub mod surrogate;
+
+pub use batch::{Batch, Segment, SegmentMut};
+pub use config::{
+    ConfigError, DiscriminatorConfig, ExplorationConfig, LearningConfig, PolicyConfig, PpoConfig,
+};
+pub use error::LearningError;
+pub use learning::{Clock, Learning};
+pub use report::{IterationReport, Seconds};
+pub use robot::{FeatureKind, JointGroup, Mirror, Robot};
+
+/// Numbers of a policy observation (III-A).
+pub const OBSERVATION: usize = 82;
+/// Numbers of an action, one per joint (III-A).
+pub const ACTION: usize = 23;
+/// Numbers that the discriminator sees of one state (III-A).
+pub const FEATURES: usize = 53;
+/// Numbers of a transition (o_t, o_{t+1}).
+pub const TRANSITION: usize = 2 * FEATURES;

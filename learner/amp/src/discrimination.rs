@@ -1,0 +1,250 @@
+//! The judge of style: a discriminator, what it sees, and how it is trained (Eq. 3–6).
+//!
+//! It sees normalised transitions; the gradient penalty is taken where it looks, that is with respect to normalised
+//! expert transitions.
+
+use crate::config::DiscriminatorConfig;
+use crate::error::Fault;
+use crate::inference::{self, CHUNK};
+use crate::losses;
+use crate::robot::FeatureKind;
+use crate::{FEATURES, TRANSITION};
+use networks::{
+    Activation, Adam, AdamConfig, Decay, Mlp, Normalizer, Scaling, Shape, first_not_finite,
+    orthogonal, shards, tensor, tracked_device, values,
+};
+use rand::Rng;
+use std::ops::Range;
+
+/// Figures of one update, means over its steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Figures {
+    /// Mean D of experts.
+    pub expert_score: f64,
+    /// Mean D of the policy.
+    pub policy_score: f64,
+    /// L_GP (Eq. 5).
+    pub gradient_penalty: f64,
+    /// L_AMP (Eq. 6).
+    pub loss: f64,
+}
+
+/// The discriminator, its normalizer and its optimizer.
+#[derive(Clone, Debug)]
+pub struct Discriminator {
+    config: DiscriminatorConfig,
+    threads: usize,
+    shape: Shape,
+    weights: Vec<f32>,
+    adam: Adam,
+    normalizer: Normalizer,
+}
+
+/// Sums over the rows of one step, or of a shard of it.
+#[derive(Default)]
+struct Sums {
+    gradient: Vec<f32>,
+    expert_score: f64,
+    policy_score: f64,
+    penalty: f64,
+    loss: f64,
+}
+
+impl Discriminator {
+    /// First weights: orthogonal with gain √2 in hidden layers, 1 in the last.
+    pub fn new(
+        config: &DiscriminatorConfig,
+        features: &[FeatureKind],
+        threads: usize,
+        rng: &mut (impl Rng + ?Sized),
+    ) -> Self {
+        let shape = Shape::new(TRANSITION, &config.hidden, 1, Activation::Relu);
+        let weights = orthogonal(&shape, std::f32::consts::SQRT_2, 1.0, rng);
+        let decay = vec![
+            Decay {
+                part: 0..shape.head(),
+                factor: config.decay,
+            },
+            Decay {
+                part: shape.head()..shape.len(),
+                factor: config.head_decay,
+            },
+        ];
+        let floors = features
+            .iter()
+            .map(|kind| match kind {
+                FeatureKind::Height => config.floors.height,
+                FeatureKind::LinearVelocity => config.floors.linear_velocity,
+                FeatureKind::AngularVelocity => config.floors.angular_velocity,
+                FeatureKind::JointPosition => config.floors.joint_position,
+                FeatureKind::JointVelocity => config.floors.joint_velocity,
+            })
+            .collect();
+        Self {
+            adam: Adam::new(shape.len(), AdamConfig::default(), decay),
+            normalizer: Normalizer::new(floors, config.feature_clip),
+            config: config.clone(),
+            threads,
+            shape,
+            weights,
+        }
+    }
+
+    /// D of transitions that are normalised already, `[row][106]`; appended to `scores`.
+    pub fn scores(&self, transitions: &[f32], scores: &mut Vec<f32>) {
+        inference::outputs(
+            &self.shape,
+            &self.weights,
+            transitions,
+            self.threads,
+            scores,
+        );
+    }
+
+    /// The mapping of transitions: that of features, for both states.
+    pub fn scaling(&self) -> Scaling {
+        let Scaling {
+            mut mean,
+            mut inverse,
+            clip,
+        } = self.normalizer.scaling();
+        mean.extend_from_within(..FEATURES);
+        inverse.extend_from_within(..FEATURES);
+        Scaling {
+            mean,
+            inverse,
+            clip,
+        }
+    }
+
+    /// Takes transitions `[row][106]`, not normalised, into the statistics: both states of each.
+    pub fn observe(&mut self, transitions: &[f32]) {
+        self.normalizer.update(transitions);
+    }
+
+    /// Trains on as many steps as `experts` and `policy` have batches; both normalised, `[row][106]`.
+    ///
+    /// # Errors
+    /// If a loss, a gradient or a weight is not finite. The weights are then spoilt: the caller holds the good ones.
+    pub fn update(&mut self, experts: &[f32], policy: &[f32]) -> Result<Figures, Fault> {
+        let batch = self.config.batch * TRANSITION;
+        let mut figures = Figures::default();
+        let steps = experts.len() / batch;
+        for (experts, policy) in experts.chunks_exact(batch).zip(policy.chunks_exact(batch)) {
+            let step = self.step(experts, policy)?;
+            figures.expert_score += step.expert_score / steps as f64;
+            figures.policy_score += step.policy_score / steps as f64;
+            figures.gradient_penalty += step.gradient_penalty / steps as f64;
+            figures.loss += step.loss / steps as f64;
+        }
+        if let Some(index) = first_not_finite(&self.weights) {
+            return Err(Fault::new(self.name(index), self.weights[index]));
+        }
+        Ok(figures)
+    }
+
+    /// One step of the optimizer on as many experts as policy transitions.
+    fn step(&mut self, experts: &[f32], policy: &[f32]) -> Result<Figures, Fault> {
+        let count = experts.len() / TRANSITION;
+        let threads = self.threads.min(count);
+        let this = &*self;
+        let mut states = vec![(); threads];
+        let mut parts = shards::run(&mut states, |i, ()| {
+            this.differentiate(experts, policy, shards::part(count, i, threads))
+        })
+        .into_iter();
+        let mut total = parts.next().unwrap_or_default();
+        for part in parts {
+            total
+                .gradient
+                .iter_mut()
+                .zip(&part.gradient)
+                .for_each(|(a, b)| *a += b);
+            total.expert_score += part.expert_score;
+            total.policy_score += part.policy_score;
+            total.penalty += part.penalty;
+            total.loss += part.loss;
+        }
+        if !total.loss.is_finite() {
+            return Err(Fault::new("discriminator loss", total.loss));
+        }
+        if let Some(index) = first_not_finite(&total.gradient) {
+            return Err(Fault::new(
+                format!("gradient of {}", self.name(index)),
+                total.gradient[index],
+            ));
+        }
+        self.adam.step(
+            &mut self.weights,
+            &total.gradient,
+            self.config.learning_rate,
+        );
+        Ok(Figures {
+            expert_score: total.expert_score / count as f64,
+            policy_score: total.policy_score / count as f64,
+            gradient_penalty: total.penalty,
+            loss: total.loss,
+        })
+    }
+
+    /// Gradient and figures of a part of a step's rows.
+    fn differentiate(&self, experts: &[f32], policy: &[f32], part: Range<usize>) -> Sums {
+        let device = tracked_device();
+        let network = Mlp::new(&self.shape, &self.weights, &device).expect("weights of this shape");
+        let count = experts.len() / TRANSITION;
+        let mut sums = Sums {
+            gradient: vec![0.0; self.weights.len()],
+            ..Sums::default()
+        };
+        let total = |scores: Vec<f32>| scores.iter().map(|d| f64::from(*d)).sum::<f64>();
+        for piece in shards::pieces(part, CHUNK) {
+            let numbers = piece.start * TRANSITION..piece.end * TRANSITION;
+            let rows = |from: &[f32]| tensor(from[numbers.clone()].to_vec(), TRANSITION, &device);
+            let expert = network.forward_all(rows(experts));
+            let policy_scores = network.forward(rows(policy));
+            let penalty = losses::gradient_penalty(network.input_gradient(&expert.hidden), count);
+            let loss = losses::amp_loss(
+                losses::expert_loss(expert.output.clone(), count),
+                losses::policy_loss(policy_scores.clone(), count),
+                penalty.clone(),
+                self.config.gradient_penalty,
+            );
+            sums.loss += f64::from(values(loss.clone())[0]);
+            sums.penalty += f64::from(values(penalty)[0]);
+            sums.expert_score += total(values(expert.output));
+            sums.policy_score += total(values(policy_scores));
+            drop(expert.hidden);
+            network.add_gradients(&mut loss.backward(), &mut sums.gradient);
+        }
+        sums
+    }
+
+    /// Weights, optimizer and normalizer, to be written from a saved state.
+    pub(crate) fn state_mut(&mut self) -> (&mut [f32], &mut Adam, &mut Normalizer) {
+        (&mut self.weights, &mut self.adam, &mut self.normalizer)
+    }
+
+    /// Weights, optimizer and normalizer.
+    pub(crate) fn state(&self) -> (&[f32], &Adam, &Normalizer) {
+        (&self.weights, &self.adam, &self.normalizer)
+    }
+
+    /// Tensors by name, sizes and place in the flat vector.
+    pub(crate) fn tensors(&self) -> Vec<(String, Vec<usize>, Range<usize>)> {
+        self.shape
+            .tensors()
+            .map(|(name, sizes, place)| (format!("discriminator.{name}"), sizes, place))
+            .collect()
+    }
+
+    fn name(&self, index: usize) -> String {
+        let tensors = self.tensors();
+        let found = tensors
+            .into_iter()
+            .find(|(_, _, place)| place.contains(&index));
+        found.map_or_else(String::new, |(name, ..)| name)
+    }
+}
+
+#[cfg(test)]
+mod tests;

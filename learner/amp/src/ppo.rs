@@ -1,0 +1,523 @@
+//! One PPO update: several epochs of clipped steps on the rows of one iteration (Schulman et al. 2017).
+//!
+//! Rows of a minibatch are divided among threads, each with its own copy of the networks; gradients are added in the
+//! order of threads, clipped as a whole, and taken by one optimizer. Actor, critic and ln σ lie in one flat vector.
+
+use crate::config::{
+    AdvantageNormalization, ExplorationKind, LearningConfig, PpoConfig, RateSchedule,
+};
+use crate::error::Fault;
+use crate::inference::CHUNK;
+use crate::minibatch::{Order, is_mirrored, split};
+use crate::report::moments;
+use crate::robot::{JointGroup, Mirror};
+use crate::{ACTION, OBSERVATION, exploration, surrogate};
+use burn::tensor::Tensor;
+use networks::{
+    Activation, Adam, AdamConfig, Mlp, Shape, clip_norm, first_not_finite, orthogonal, shards,
+    tensor, tracked_device, values,
+};
+use rand::Rng;
+use std::ops::Range;
+
+/// Rows of one iteration, all of the same count. Observations are normalised.
+#[derive(Clone, Copy, Debug)]
+pub struct Rows<'a> {
+    /// `[row][82]`
+    pub observations: &'a [f32],
+    /// The same rows mirrored, `[row][82]`; read if a share of rows is mirrored.
+    pub mirrored: &'a [f32],
+    /// `[row][23]`
+    pub actions: &'a [f32],
+    /// Mean actions of the policy that acted, `[row][23]`.
+    pub means: &'a [f32],
+    /// Log-densities under it, `[row]`.
+    pub log_probs: &'a [f32],
+    /// Not normalised, `[row]`.
+    pub advantages: &'a [f32],
+    /// Targets of the critic, `[row]`.
+    pub returns: &'a [f32],
+    /// The critic's values before the update, `[row]`.
+    pub values: &'a [f32],
+}
+
+/// Figures of one update.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PpoFigures {
+    /// Mean surrogate loss.
+    pub surrogate: f64,
+    /// Mean value loss.
+    pub value_loss: f64,
+    /// Mean KL(old ‖ new) of the last epoch.
+    pub kl: f64,
+    /// Share of ratios outside the clip range.
+    pub clip_fraction: f64,
+    /// Mean global norm of the gradient before clipping.
+    pub gradient_norm: f64,
+    /// Entropy after the update.
+    pub entropy: f64,
+}
+
+/// Actor, critic, exploration and their optimizer.
+#[derive(Clone, Debug)]
+pub struct Ppo {
+    config: PpoConfig,
+    actor: Shape,
+    critic: Shape,
+    mirror: Mirror,
+    /// ln σ is within these; none if σ is not learned.
+    log_sigma_limits: Option<Range<f32>>,
+    /// Actor, critic, ln σ.
+    weights: Vec<f32>,
+    adam: Adam,
+    rate: f32,
+    order: Order,
+}
+
+/// Sums over the rows of one minibatch, or of a shard of it.
+#[derive(Clone, Debug, Default)]
+struct Sums {
+    gradient: Vec<f32>,
+    surrogate: f64,
+    value_loss: f64,
+    kl: f64,
+    kl_rows: usize,
+    clipped: usize,
+}
+
+/// What all shards of a minibatch have in common.
+struct Minibatch<'a> {
+    rows: &'a Rows<'a>,
+    indices: &'a [usize],
+    old_sigma: &'a [f32],
+    /// Advantages become (A − shift)·scale.
+    shift: f32,
+    scale: f32,
+}
+
+impl Ppo {
+    /// First weights: orthogonal with gain √2 in hidden layers, a small last gain for the actor, 1 for the critic.
+    pub fn new(
+        config: &LearningConfig,
+        mirror: Mirror,
+        joints: &[JointGroup],
+        rng: &mut (impl Rng + ?Sized),
+    ) -> Self {
+        let hidden_gain = std::f32::consts::SQRT_2;
+        let actor = Shape::new(OBSERVATION, &config.policy.hidden, ACTION, Activation::Elu);
+        let critic = Shape::new(
+            OBSERVATION,
+            &config.policy.critic_hidden,
+            1,
+            Activation::Elu,
+        );
+        let mut weights = orthogonal(&actor, hidden_gain, config.policy.last_gain, rng);
+        weights.extend(orthogonal(&critic, hidden_gain, 1.0, rng));
+        weights.extend(exploration::initial_log_sigma(&config.exploration, joints));
+        let limits = config.exploration.min_sigma.ln()..config.exploration.max_sigma.ln();
+        Self {
+            adam: Adam::new(weights.len(), AdamConfig::default(), vec![]),
+            rate: config.ppo.learning_rate,
+            config: config.ppo.clone(),
+            log_sigma_limits: (config.exploration.kind == ExplorationKind::Learned)
+                .then_some(limits),
+            order: Order::default(),
+            actor,
+            critic,
+            mirror,
+            weights,
+        }
+    }
+
+    /// Sizes of the actor.
+    pub fn actor_shape(&self) -> &Shape {
+        &self.actor
+    }
+
+    /// Sizes of the critic.
+    pub fn critic_shape(&self) -> &Shape {
+        &self.critic
+    }
+
+    /// The actor's weights.
+    pub fn actor(&self) -> &[f32] {
+        &self.weights[..self.actor.len()]
+    }
+
+    /// The critic's weights.
+    pub fn critic(&self) -> &[f32] {
+        &self.weights[self.actor.len()..][..self.critic.len()]
+    }
+
+    /// ln σ per action; means something if σ is learned.
+    pub fn log_sigma(&self) -> &[f32] {
+        &self.weights[self.actor.len() + self.critic.len()..]
+    }
+
+    /// Adam's rate.
+    pub fn rate(&self) -> f32 {
+        self.rate
+    }
+
+    /// All weights, the optimizer and its rate, to be written from a saved state.
+    pub(crate) fn state_mut(&mut self) -> (&mut [f32], &mut Adam, &mut f32) {
+        (&mut self.weights, &mut self.adam, &mut self.rate)
+    }
+
+    /// The optimizer.
+    pub(crate) fn adam(&self) -> &Adam {
+        &self.adam
+    }
+
+    /// Improves actor and critic; `sigma` is the exploration width that the rows were collected with.
+    ///
+    /// # Errors
+    /// If a loss, a gradient or a weight is not finite. The weights are then spoilt: the caller holds the good ones.
+    pub fn update(
+        &mut self,
+        rows: &Rows<'_>,
+        sigma: &[f32],
+        rng: &mut (impl Rng + ?Sized),
+    ) -> Result<PpoFigures, Fault> {
+        let count = rows.advantages.len();
+        let mut order = std::mem::take(&mut self.order);
+        let whole = normalization(rows.advantages.iter().copied());
+        let mut figures = PpoFigures::default();
+        let mut steps = 0;
+        for epoch in 0..self.config.epochs {
+            let last_epoch = epoch + 1 == self.config.epochs;
+            let indices = order.shuffle(count, rng);
+            let minibatches = split(indices, self.config.minibatch);
+            let mut kl = (0.0, 0);
+            for indices in minibatches {
+                let (shift, scale) = match self.config.advantage_normalization {
+                    AdvantageNormalization::Batch => whole,
+                    AdvantageNormalization::Minibatch => {
+                        normalization(indices.iter().map(|i| rows.advantages[*i]))
+                    }
+                    AdvantageNormalization::None => (0.0, 1.0),
+                };
+                let minibatch = Minibatch {
+                    rows,
+                    indices,
+                    old_sigma: sigma,
+                    shift,
+                    scale,
+                };
+                let sums = self.step(&minibatch, sigma)?;
+                figures.surrogate += sums.surrogate;
+                figures.value_loss += sums.value_loss;
+                figures.clip_fraction += sums.clipped as f64 / indices.len() as f64;
+                figures.gradient_norm += sums.norm;
+                kl = (kl.0 + sums.kl, kl.1 + sums.kl_rows);
+                steps += 1;
+            }
+            if last_epoch {
+                figures.kl = kl.0 / kl.1.max(1) as f64;
+            }
+        }
+        self.order = order;
+        if let Some(index) = first_not_finite(&self.weights) {
+            return Err(Fault::new(self.name(index), self.weights[index]));
+        }
+        if self.config.schedule == RateSchedule::PerIteration {
+            self.follow(figures.kl);
+        }
+        for figure in [
+            &mut figures.surrogate,
+            &mut figures.value_loss,
+            &mut figures.clip_fraction,
+            &mut figures.gradient_norm,
+        ] {
+            *figure /= f64::from(steps.max(1));
+        }
+        figures.entropy = f64::from(values(surrogate::entropy(self.log_sigma_tensor(sigma)))[0]);
+        Ok(figures)
+    }
+
+    /// One step of the optimizer.
+    fn step(&mut self, minibatch: &Minibatch<'_>, sigma: &[f32]) -> Result<StepSums, Fault> {
+        let count = minibatch.indices.len();
+        let threads = self.config.threads.min(count);
+        let mut states = vec![(); threads];
+        let this = &*self;
+        let mut parts = shards::run(&mut states, |i, ()| {
+            this.differentiate(minibatch, shards::part(count, i, threads), sigma)
+        })
+        .into_iter();
+        let mut total = parts.next().unwrap_or_default();
+        for part in parts {
+            total
+                .gradient
+                .iter_mut()
+                .zip(&part.gradient)
+                .for_each(|(a, b)| *a += b);
+            total.surrogate += part.surrogate;
+            total.value_loss += part.value_loss;
+            total.kl += part.kl;
+            total.kl_rows += part.kl_rows;
+            total.clipped += part.clipped;
+        }
+        for (what, value) in [
+            ("surrogate loss", total.surrogate),
+            ("value loss", total.value_loss),
+        ] {
+            if !value.is_finite() {
+                return Err(Fault::new(what, value));
+            }
+        }
+        let norm = clip_norm(&mut total.gradient, self.config.gradient_norm);
+        if let Some(index) = first_not_finite(&total.gradient) {
+            return Err(Fault::new(
+                format!("gradient of {}", self.name(index)),
+                total.gradient[index],
+            ));
+        }
+        if self.config.schedule == RateSchedule::PerMinibatch {
+            self.follow(total.kl / total.kl_rows.max(1) as f64);
+        }
+        self.adam
+            .step(&mut self.weights, &total.gradient, self.rate);
+        if let Some(limits) = &self.log_sigma_limits {
+            let start = self.actor.len() + self.critic.len();
+            for log in &mut self.weights[start..] {
+                *log = log.clamp(limits.start, limits.end);
+            }
+        }
+        Ok(StepSums {
+            surrogate: total.surrogate,
+            value_loss: total.value_loss,
+            kl: total.kl,
+            kl_rows: total.kl_rows,
+            clipped: total.clipped,
+            norm: f64::from(norm),
+        })
+    }
+
+    /// Gradient and figures of a part of a minibatch.
+    fn differentiate(&self, minibatch: &Minibatch<'_>, part: Range<usize>, sigma: &[f32]) -> Sums {
+        let device = tracked_device();
+        let network =
+            |shape, weights| Mlp::new(shape, weights, &device).expect("weights of this shape");
+        let actor = network(&self.actor, self.actor());
+        let critic = network(&self.critic, self.critic());
+        let log_sigma = self.log_sigma_tensor(sigma);
+        let new_sigma: Vec<f32> = values(log_sigma.clone())
+            .iter()
+            .map(|log| log.exp())
+            .collect();
+        let count = minibatch.indices.len();
+        let mut sums = Sums {
+            gradient: vec![0.0; self.weights.len()],
+            ..Sums::default()
+        };
+        let (actor_gradient, rest) = sums.gradient.split_at_mut(self.actor.len());
+        let (critic_gradient, sigma_gradient) = rest.split_at_mut(self.critic.len());
+        for piece in shards::pieces(part, CHUNK) {
+            let chunk = self.gather(minibatch, piece);
+            let rows = |numbers: &[f32], columns| tensor(numbers.to_vec(), columns, &device);
+            let observations = tensor(chunk.observations, OBSERVATION, &device);
+
+            let means = actor.forward(observations.clone());
+            let density = surrogate::log_density(
+                rows(&chunk.actions, ACTION),
+                means.clone(),
+                log_sigma.clone(),
+            );
+            let loss = surrogate::clipped_surrogate(
+                density.clone(),
+                rows(&chunk.log_probs, 1),
+                tensor(chunk.advantages, 1, &device),
+                self.config.clip,
+                count,
+            );
+            sums.surrogate += f64::from(values(loss.clone())[0]);
+            let share = chunk.log_probs.len() as f32 / count as f32;
+            let loss = match self.log_sigma_limits {
+                Some(_) => {
+                    let bonus = self.config.entropy_coefficient * share;
+                    loss - surrogate::entropy(log_sigma.clone()) * bonus
+                }
+                None => loss,
+            };
+            let mut gradients = loss.backward();
+            actor.add_gradients(&mut gradients, actor_gradient);
+            if let Some(gradient) = log_sigma.grad_remove(&mut gradients) {
+                sigma_gradient
+                    .iter_mut()
+                    .zip(values(gradient))
+                    .for_each(|(a, b)| *a += b);
+            }
+
+            let loss = surrogate::value_loss(
+                critic.forward(observations),
+                tensor(chunk.values, 1, &device),
+                tensor(chunk.returns, 1, &device),
+                self.config.value_clip,
+                count,
+            );
+            sums.value_loss += f64::from(values(loss.clone())[0]);
+            let mut gradients = (loss * self.config.value_coefficient).backward();
+            critic.add_gradients(&mut gradients, critic_gradient);
+
+            let (means, densities) = (values(means), values(density));
+            for (i, mirrored) in chunk.mirrored.iter().enumerate() {
+                let ratio = (densities[i] - chunk.log_probs[i]).exp();
+                sums.clipped += usize::from((ratio - 1.0).abs() > self.config.clip);
+                if !mirrored {
+                    let action = i * ACTION..(i + 1) * ACTION;
+                    sums.kl += surrogate::divergence(
+                        &chunk.means[action.clone()],
+                        minibatch.old_sigma,
+                        &means[action],
+                        &new_sigma,
+                    );
+                    sums.kl_rows += 1;
+                }
+            }
+        }
+        sums
+    }
+
+    /// Copies rows together, mirrored where it is their turn.
+    ///
+    /// A mirrored row keeps its log-density and advantage: it stands for what the mirrored robot would have met.
+    fn gather(&self, minibatch: &Minibatch<'_>, piece: Range<usize>) -> Chunk {
+        let Minibatch { rows, indices, .. } = minibatch;
+        let mut chunk = Chunk::with_capacity(piece.len());
+        for position in piece {
+            let row = indices[position];
+            let mirrored = is_mirrored(position, self.config.mirrored_share);
+            let observation = row * OBSERVATION..(row + 1) * OBSERVATION;
+            let action = row * ACTION..(row + 1) * ACTION;
+            if mirrored {
+                chunk
+                    .observations
+                    .extend_from_slice(&rows.mirrored[observation]);
+                let mut out = [0.0; ACTION];
+                self.mirror.apply(&rows.actions[action], &mut out);
+                chunk.actions.extend_from_slice(&out);
+                chunk.means.extend_from_slice(&[0.0; ACTION]); // not read: KL is that of rows as they were
+            } else {
+                chunk
+                    .observations
+                    .extend_from_slice(&rows.observations[observation]);
+                chunk
+                    .actions
+                    .extend_from_slice(&rows.actions[action.clone()]);
+                chunk.means.extend_from_slice(&rows.means[action]);
+            }
+            chunk.mirrored.push(mirrored);
+            chunk.log_probs.push(rows.log_probs[row]);
+            chunk
+                .advantages
+                .push((rows.advantages[row] - minibatch.shift) * minibatch.scale);
+            chunk.returns.push(rows.returns[row]);
+            chunk.values.push(rows.values[row]);
+        }
+        chunk
+    }
+
+    /// ln σ `[1, 23]`: a differentiable weight if it is learned, else that of the given σ.
+    fn log_sigma_tensor(&self, sigma: &[f32]) -> Tensor<2> {
+        let device = tracked_device();
+        match self.log_sigma_limits {
+            Some(_) => tensor(self.log_sigma().to_vec(), ACTION, &device).require_grad(),
+            None => tensor(sigma.iter().map(|s| s.ln()).collect(), ACTION, &device),
+        }
+    }
+
+    /// Moves the rate one factor toward the KL target, if KL is outside the band.
+    fn follow(&mut self, kl: f64) {
+        let (target, band) = (
+            f64::from(self.config.kl_target),
+            f64::from(self.config.kl_band),
+        );
+        if kl > target * band {
+            self.rate /= self.config.rate_factor;
+        } else if kl < target / band {
+            self.rate *= self.config.rate_factor;
+        }
+        let (least, most) = (self.config.min_learning_rate, self.config.max_learning_rate);
+        self.rate = self.rate.clamp(least, most);
+    }
+
+    /// Tensors by name, sizes and place in the flat vector.
+    pub(crate) fn tensors(&self) -> Vec<(String, Vec<usize>, Range<usize>)> {
+        let parts = [
+            ("actor", &self.actor, 0),
+            ("critic", &self.critic, self.actor.len()),
+        ];
+        let mut tensors: Vec<_> = parts
+            .into_iter()
+            .flat_map(|(part, shape, start)| {
+                shape.tensors().map(move |(name, sizes, place)| {
+                    (
+                        format!("{part}.{name}"),
+                        sizes,
+                        start + place.start..start + place.end,
+                    )
+                })
+            })
+            .collect();
+        let start = self.actor.len() + self.critic.len();
+        tensors.push(("log_sigma".to_owned(), vec![ACTION], start..start + ACTION));
+        tensors
+    }
+
+    /// Name of the tensor that a number of the flat vector belongs to.
+    fn name(&self, index: usize) -> String {
+        let tensors = self.tensors();
+        let found = tensors
+            .into_iter()
+            .find(|(_, _, place)| place.contains(&index));
+        found.map_or_else(String::new, |(name, ..)| name)
+    }
+}
+
+/// Figures of one step.
+struct StepSums {
+    surrogate: f64,
+    value_loss: f64,
+    kl: f64,
+    kl_rows: usize,
+    clipped: usize,
+    norm: f64,
+}
+
+/// Rows copied together.
+struct Chunk {
+    observations: Vec<f32>,
+    actions: Vec<f32>,
+    means: Vec<f32>,
+    log_probs: Vec<f32>,
+    advantages: Vec<f32>,
+    returns: Vec<f32>,
+    values: Vec<f32>,
+    mirrored: Vec<bool>,
+}
+
+impl Chunk {
+    fn with_capacity(rows: usize) -> Self {
+        let column = || Vec::with_capacity(rows);
+        Self {
+            observations: Vec::with_capacity(rows * OBSERVATION),
+            actions: Vec::with_capacity(rows * ACTION),
+            means: Vec::with_capacity(rows * ACTION),
+            log_probs: column(),
+            advantages: column(),
+            returns: column(),
+            values: column(),
+            mirrored: Vec::with_capacity(rows),
+        }
+    }
+}
+
+/// Shift and scale that give numbers mean 0 and deviation 1.
+fn normalization(numbers: impl Iterator<Item = f32>) -> (f32, f32) {
+    let [mean, deviation, ..] = moments(&numbers.collect::<Vec<_>>());
+    (mean as f32, (1.0 / (deviation + 1e-8)) as f32)
+}
+
+#[cfg(test)]
+mod tests;

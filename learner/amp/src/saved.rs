@@ -1,0 +1,154 @@
+//! The learner as bytes: everything that an exact continuation needs, and checks when it comes back.
+
+use crate::replay::Replay;
+use crate::{Learning, LearningError};
+use networks::{AdamState, NormalizerState};
+use rand_pcg::Pcg64;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// Changes when the content does.
+const FORMAT: u32 = 1;
+
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    format: u32,
+    iteration: u64,
+    samples: u64,
+    rate: f32,
+    policy: Vec<Tensor>,
+    policy_adam: AdamState,
+    discriminator: Vec<Tensor>,
+    discriminator_adam: AdamState,
+    observations: NormalizerState,
+    features: NormalizerState,
+    replay: Replay,
+    generator: Pcg64,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Tensor {
+    name: String,
+    sizes: Vec<usize>,
+    numbers: Vec<f32>,
+}
+
+type Layout = Vec<(String, Vec<usize>, Range<usize>)>;
+
+impl Learning {
+    /// Everything that an exact continuation needs. The caller keeps the configuration beside it.
+    pub fn save(&self) -> Vec<u8> {
+        let core = &self.core;
+        let (weights, adam, features) = core.discriminator.state();
+        let policy = [core.ppo.actor(), core.ppo.critic(), core.ppo.log_sigma()].concat();
+        let saved = Saved {
+            format: FORMAT,
+            iteration: core.iteration,
+            samples: core.samples,
+            rate: core.ppo.rate(),
+            policy: tensors(core.ppo.tensors(), &policy),
+            policy_adam: core.ppo.adam().state().clone(),
+            discriminator: tensors(core.discriminator.tensors(), weights),
+            discriminator_adam: adam.state().clone(),
+            observations: core.observations.state().clone(),
+            features: features.state().clone(),
+            replay: self.replay.clone(),
+            generator: core.generator.clone(),
+        };
+        bincode::serde::encode_to_vec(&saved, bincode::config::standard())
+            .expect("plain numbers into memory")
+    }
+
+    /// Continues from a saved state; the next iteration gives the same bits as it would have given then.
+    ///
+    /// # Errors
+    /// If the bytes are no saved state, or one of networks of other sizes. The learner is then as it was before.
+    pub fn load(&mut self, bytes: &[u8]) -> Result<(), LearningError> {
+        let refuse = |why: String| LearningError::Decode(why);
+        let (saved, used): (Saved, usize) =
+            bincode::serde::decode_from_slice(bytes, bincode::config::standard())
+                .map_err(|error| refuse(error.to_string()))?;
+        if saved.format != FORMAT {
+            return Err(refuse(format!(
+                "format {}, this program reads {FORMAT}",
+                saved.format
+            )));
+        }
+        if used != bytes.len() {
+            return Err(refuse(format!("{} bytes too many", bytes.len() - used)));
+        }
+        if !saved.replay.is_sound() {
+            return Err(refuse(
+                "the remembered transitions contradict themselves".to_owned(),
+            ));
+        }
+        if !(saved.rate.is_finite() && saved.rate > 0.0) {
+            return Err(refuse(format!("learning rate {}", saved.rate)));
+        }
+        let mut core = self.core.clone();
+        let layout = core.ppo.tensors();
+        let (weights, adam, rate) = core.ppo.state_mut();
+        restore(layout, saved.policy, weights)?;
+        adam.restore(saved.policy_adam)?;
+        *rate = saved.rate;
+        let layout = core.discriminator.tensors();
+        let (weights, adam, features) = core.discriminator.state_mut();
+        restore(layout, saved.discriminator, weights)?;
+        adam.restore(saved.discriminator_adam)?;
+        features.restore(saved.features)?;
+        core.observations.restore(saved.observations)?;
+        core.generator = saved.generator;
+        core.iteration = saved.iteration;
+        core.samples = saved.samples;
+        self.core = core;
+        self.replay = saved.replay.with_capacity(self.replay.capacity());
+        Ok(())
+    }
+}
+
+fn tensors(layout: Layout, flat: &[f32]) -> Vec<Tensor> {
+    layout
+        .into_iter()
+        .map(|(name, sizes, place)| Tensor {
+            name,
+            sizes,
+            numbers: flat[place].to_vec(),
+        })
+        .collect()
+}
+
+/// Writes tensors to their places if they are the ones expected, in order.
+fn restore(layout: Layout, saved: Vec<Tensor>, flat: &mut [f32]) -> Result<(), LearningError> {
+    for i in 0..layout.len().max(saved.len()) {
+        let (expected, found) = (layout.get(i), saved.get(i));
+        let fits = expected
+            .zip(found)
+            .filter(|((name, sizes, place), tensor)| {
+                *name == tensor.name
+                    && *sizes == tensor.sizes
+                    && place.len() == tensor.numbers.len()
+            });
+        let Some(((name, _, place), tensor)) = fits else {
+            let name = expected
+                .map(|(name, ..)| name)
+                .or(found.map(|tensor| &tensor.name));
+            let describe = |there: Option<(&String, &Vec<usize>)>| match there {
+                Some((name, sizes)) => format!("{name} {sizes:?}"),
+                None => "absent".to_owned(),
+            };
+            return Err(LearningError::Tensor {
+                name: name.cloned().unwrap_or_default(),
+                saved: describe(found.map(|tensor| (&tensor.name, &tensor.sizes))),
+                expected: describe(expected.map(|(name, sizes, _)| (name, sizes))),
+            });
+        };
+        if let Some(index) = networks::first_not_finite(&tensor.numbers) {
+            return Err(LearningError::Decode(format!(
+                "number {index} of tensor `{name}` is {}",
+                tensor.numbers[index]
+            )));
+        }
+        flat[place.clone()].copy_from_slice(&tensor.numbers);
+    }
+    Ok(())
+}
