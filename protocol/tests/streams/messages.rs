@@ -143,6 +143,38 @@ fn a_late_actor_gets_the_newest_weights_and_only_those() {
 }
 
 #[test]
+fn weights_in_use_do_not_hinder_newer_ones() {
+    let run = Run::new();
+    let (learner, actor) = (run.join("learner"), run.join("actor-0"));
+    let publisher = WeightsPublisher::new(&learner, 1).unwrap();
+    let subscriber = WeightsSubscriber::new(&actor).unwrap();
+    let broadcast = |version| {
+        let header = WeightsHeader::new(version, WeightsOrder::Collect, &[], LAYOUT, false);
+        publisher.broadcast(header, &[version as f32]).unwrap();
+    };
+    broadcast(1);
+    let in_use = subscriber.newest().unwrap().unwrap();
+    broadcast(2);
+    let newer = subscriber.newest().unwrap().unwrap();
+    assert_eq!((in_use.flat(), newer.flat()), (&[1.0][..], &[2.0][..]));
+    drop(in_use);
+
+    // A learner that broadcasts while the actor looks: it found one newer and looks on.
+    std::thread::scope(|scope| {
+        scope.spawn(|| (3..2000).for_each(broadcast));
+        let mut last = 2;
+        while last < 1999 {
+            subscriber.wait(DEADLINE).unwrap();
+            if let Some(weights) = subscriber.newest().unwrap() {
+                assert!(weights.header().version > last);
+                last = weights.header().version;
+            }
+        }
+    });
+    drop(newer);
+}
+
+#[test]
 fn weights_outlive_more_broadcasts_than_memory_is_reserved_for() {
     let run = Run::new();
     let (learner, actor) = (run.join("learner"), run.join("actor-0"));
