@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 use ampco::{Decision, Granularity, Rule};
 use iceoryx2::prelude::ZeroCopySend;
 
-use crate::port::{PortError, Publisher, Subscriber, Wake};
+use crate::error::PortError;
+use crate::port::{Publisher, Subscriber, Wake};
 use crate::presence::Node;
 use crate::stream::Directives;
 

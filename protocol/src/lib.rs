@@ -25,26 +25,30 @@
 
 mod directive;
 mod domain;
+mod error;
 mod port;
 mod presence;
 mod reward;
 mod rollout;
 mod room;
 mod service;
+mod shutdown;
 mod stream;
 mod watch;
 mod weights;
 
 pub use directive::{Answer, Directive, DirectivePublisher, DirectiveSubscriber, RuleError};
 pub use domain::{Domain, DomainError, Member, PROTOCOL_VERSION};
-pub use port::{PortError, SendOutcome, Wake};
-pub use presence::{Node, PresenceError, SUPERVISOR_VARIABLE, Shutdown, TICK, end_with_supervisor};
+pub use error::PortError;
+pub use port::{SendOutcome, Wake};
+pub use presence::{Node, TICK};
 pub use reward::{RewardArrival, RewardPublisher, RewardReport, RewardSubscriber};
 pub use rollout::{
     Entry, Ledger, Rollout, RolloutHeader, RolloutLayout, RolloutLoan, RolloutPublisher,
     RolloutStep, RolloutStepMut, RolloutSubscriber, RolloutView, RolloutViewMut, SendTotals,
     Totals,
 };
+pub use shutdown::{PresenceError, SUPERVISOR_VARIABLE, Shutdown, end_with_supervisor};
 pub use stream::MAX_ACTORS;
 pub use weights::{
     MAX_HIDDEN_LAYERS, Weights, WeightsHeader, WeightsOrder, WeightsPublisher, WeightsSubscriber,

@@ -7,7 +7,8 @@ use std::time::Duration;
 
 use iceoryx2::prelude::ZeroCopySend;
 
-use crate::port::{PortError, Publisher, Subscriber, Wake};
+use crate::error::PortError;
+use crate::port::{Publisher, Subscriber, Wake};
 use crate::presence::Node;
 use crate::stream::Rewards;
 

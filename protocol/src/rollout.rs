@@ -14,7 +14,8 @@ use iceoryx2::prelude::ZeroCopySend;
 pub use layout::{RolloutLayout, RolloutStep, RolloutStepMut, RolloutView, RolloutViewMut};
 pub use ledger::{Entry, Ledger, Totals};
 
-use crate::port::{Loan, PortError, Publisher, Received, SendOutcome, Subscriber, Wake};
+use crate::error::PortError;
+use crate::port::{Loan, Publisher, Received, SendOutcome, Subscriber, Wake};
 use crate::presence::Node;
 use crate::stream::{Rollouts, Stream};
 

@@ -13,7 +13,7 @@ use rustix::fs::{FallocateFlags, fallocate, statvfs};
 use rustix::io::Errno;
 
 use crate::domain::SHARED_MEMORY;
-use crate::port::PortError;
+use crate::error::PortError;
 
 /// Bytes kept free for the small segments in which connections and services are kept.
 pub(crate) const MARGIN: u64 = 4 << 20;

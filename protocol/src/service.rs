@@ -10,7 +10,8 @@ use iceoryx2::prelude::{AttributeVerifier, EventId, MessagingPattern, ServiceNam
 use iceoryx2::service::Service as _;
 use iceoryx2::service::port_factory::{event, publish_subscribe};
 
-use crate::port::{PortError, Service};
+use crate::error::PortError;
+use crate::port::Service;
 use crate::presence::Membership;
 use crate::stream::{MAX_NODES, Spec, Stream};
 

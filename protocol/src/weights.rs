@@ -9,7 +9,8 @@ use std::time::Duration;
 
 use iceoryx2::prelude::ZeroCopySend;
 
-use crate::port::{PortError, Publisher, Received, Subscriber, Wake};
+use crate::error::PortError;
+use crate::port::{Publisher, Received, Subscriber, Wake};
 use crate::presence::Node;
 use crate::rollout::RolloutLayout;
 use crate::stream::{self, Stream};
