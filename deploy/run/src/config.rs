@@ -170,6 +170,11 @@ impl Config {
         parts.try_fold(first, |value, name| value.get(name))
     }
 
+    /// The dotted path of every value that was given.
+    pub fn paths(&self) -> impl Iterator<Item = &str> {
+        self.origins.keys().map(String::as_str)
+    }
+
     /// Where the value at a dotted path was given, if it was.
     pub fn origin(&self, path: &str) -> Option<&str> {
         let mut path = path;

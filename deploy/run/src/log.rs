@@ -10,6 +10,7 @@ use std::sync::Mutex;
 
 use tracing::level_filters::LevelFilter;
 use tracing_subscriber::layer::SubscriberExt;
+use tracing_subscriber::registry::LookupSpan;
 use tracing_subscriber::util::SubscriberInitExt;
 use tracing_subscriber::{EnvFilter, Layer, fmt};
 
@@ -31,14 +32,9 @@ pub fn init(logs: &Path, process: &str) -> io::Result<()> {
         .with_target(false)
         .with_writer(Mutex::new(file))
         .with_filter(filter);
-    let to_console = fmt::layer()
-        .without_time()
-        .with_target(false)
-        .with_writer(io::stderr)
-        .with_filter(LevelFilter::WARN);
     tracing_subscriber::registry()
         .with(to_file)
-        .with(to_console)
+        .with(to_console())
         .try_init()
         .map_err(io::Error::other)?;
     // The event goes to the console as well, so the usual message would say it twice.
@@ -51,6 +47,26 @@ pub fn init(logs: &Path, process: &str) -> io::Result<()> {
         tracing::error!(place, "panic: {words}");
     }));
     Ok(())
+}
+
+/// Warnings to standard error and nothing else: for a command that has no run of its own.
+///
+/// # Errors
+/// When a log was set up before.
+pub fn init_console() -> io::Result<()> {
+    let registry = tracing_subscriber::registry().with(to_console());
+    registry.try_init().map_err(io::Error::other)
+}
+
+fn to_console<S>() -> impl Layer<S>
+where
+    S: tracing::Subscriber + for<'a> LookupSpan<'a>,
+{
+    fmt::layer()
+        .without_time()
+        .with_target(false)
+        .with_writer(io::stderr)
+        .with_filter(LevelFilter::WARN)
 }
 
 fn open(logs: &Path, process: &str) -> io::Result<File> {

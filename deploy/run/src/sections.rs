@@ -24,6 +24,9 @@ pub struct RunConfig {
     pub seed: u64,
     /// When actors collect.
     pub mode: Mode,
+    /// Overlapped: a rollout whose weights are more versions than this behind the newest is counted
+    /// as stale and not used.
+    pub max_lag: u64,
     /// The iteration at which the run is complete, counted from its very first; 0 = no limit.
     /// Table II: 20,000.
     pub iterations: u64,
@@ -69,6 +72,7 @@ impl Default for RunConfig {
         Self {
             seed: 1,
             mode: Mode::default(),
+            max_lag: 2,
             iterations: 20_000,
             minutes: 0.0,
             checkpoint_every: 50,

@@ -1,0 +1,270 @@
+//! One program of the group: started, watched, started again.
+//!
+//! Separate from the group because the rule of what a death means is a small decision of its own,
+//! and is tested as one.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::{ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result};
+use rustix::process::{Pid, Signal, kill_process};
+use tokio::io::{AsyncBufReadExt, BufReader};
+use tokio::process::Command;
+use tokio::sync::mpsc::UnboundedSender;
+
+use crate::failure::usage;
+
+/// A program that lived less is counted as having died on the way up.
+const BRIEF: Duration = Duration::from_secs(10);
+
+/// So many deaths in a row on the way up, and it is given up.
+const MOST_BRIEF_LIVES: u32 = 5;
+
+/// What a death means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Verdict {
+    /// It ended of its own accord.
+    Done,
+    /// It is to be started again after this time.
+    Restart(Duration),
+    /// Starting it again would not help.
+    GiveUp,
+}
+
+/// A line that a child wrote to standard error: its role and its words.
+pub(crate) type Words = (String, String);
+
+/// A program and what became of it.
+#[derive(Debug)]
+pub(crate) struct Child {
+    pub(crate) role: String,
+    pub(crate) program: PathBuf,
+    pub(crate) arguments: Vec<OsString>,
+    pub(crate) restarts: u32,
+    state: State,
+    brief_lives: u32,
+    words: UnboundedSender<Words>,
+}
+
+#[derive(Debug)]
+enum State {
+    Waiting {
+        until: Instant,
+    },
+    Running {
+        process: tokio::process::Child,
+        since: Instant,
+    },
+    Ended,
+}
+
+impl Child {
+    /// A program that has not been started yet.
+    pub(crate) fn new(
+        role: String,
+        program: PathBuf,
+        arguments: Vec<OsString>,
+        words: UnboundedSender<Words>,
+    ) -> Self {
+        let until = Instant::now();
+        Self {
+            role,
+            program,
+            arguments,
+            restarts: 0,
+            state: State::Waiting { until },
+            brief_lives: 0,
+            words,
+        }
+    }
+
+    /// Starts it. It leads a process group of its own, so that Ctrl-C on the terminal reaches only
+    /// us, and it asks the kernel for SIGTERM at our death.
+    pub(crate) fn start(&mut self, now: Instant) -> Result<()> {
+        let mut command = Command::new(&self.program);
+        command
+            .args(&self.arguments)
+            .env(
+                protocol::SUPERVISOR_VARIABLE,
+                std::process::id().to_string(),
+            )
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .process_group(0);
+        let mut process = command
+            .spawn()
+            .with_context(|| format!("starting {}", self.program.display()))?;
+        if let Some(stderr) = process.stderr.take() {
+            let (role, words) = (self.role.clone(), self.words.clone());
+            tokio::spawn(async move {
+                let mut lines = BufReader::new(stderr).lines();
+                while let Ok(Some(line)) = lines.next_line().await {
+                    if words.send((role.clone(), line)).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        self.state = State::Running {
+            process,
+            since: now,
+        };
+        Ok(())
+    }
+
+    /// Looks whether it has died since the last look, and how.
+    pub(crate) fn died(&mut self, now: Instant) -> Result<Option<(ExitStatus, Verdict)>> {
+        let State::Running { process, since } = &mut self.state else {
+            return Ok(None);
+        };
+        let waited = process.try_wait();
+        let Some(status) = waited.with_context(|| format!("waiting for {}", self.role))? else {
+            return Ok(None);
+        };
+        let lived = now - *since;
+        self.brief_lives = if lived < BRIEF {
+            self.brief_lives + 1
+        } else {
+            1
+        };
+        let verdict = verdict(status, lived, self.brief_lives, self.restarts);
+        self.state = match verdict {
+            Verdict::Restart(after) => State::Waiting { until: now + after },
+            Verdict::Done | Verdict::GiveUp => State::Ended,
+        };
+        Ok(Some((status, verdict)))
+    }
+
+    /// Whether it is time to start it again.
+    pub(crate) fn is_due(&self, now: Instant) -> bool {
+        matches!(self.state, State::Waiting { until } if now >= until)
+    }
+
+    /// Has it started again although it ended of its own accord.
+    pub(crate) fn start_again_at(&mut self, until: Instant) {
+        self.restarts += 1;
+        self.state = State::Waiting { until };
+    }
+
+    pub(crate) fn is_running(&self) -> bool {
+        matches!(self.state, State::Running { .. })
+    }
+
+    /// Never to be started again; a running process is not touched.
+    pub(crate) fn retire(&mut self) {
+        if !self.is_running() {
+            self.state = State::Ended;
+        }
+    }
+
+    /// Sends a signal if it is running.
+    pub(crate) fn signal(&self, signal: Signal) {
+        if let State::Running { process, .. } = &self.state
+            && let Some(pid) = process.id().and_then(|id| Pid::from_raw(id.cast_signed()))
+        {
+            // It may have ended a moment ago; the next look will see that.
+            let _ = kill_process(pid, signal);
+        }
+    }
+}
+
+/// What a death means. `brief_lives` counts this one if it was brief, `restarts` those before.
+fn verdict(status: ExitStatus, lived: Duration, brief_lives: u32, restarts: u32) -> Verdict {
+    if status.success() {
+        return Verdict::Done;
+    }
+    // A first start that ends with an ordinary failure has said what is wrong; it would say it again.
+    let refused = matches!(status.code(), Some(1 | 2)) && lived < BRIEF && restarts == 0;
+    if refused || brief_lives >= MOST_BRIEF_LIVES {
+        return Verdict::GiveUp;
+    }
+    let doublings = brief_lives.saturating_sub(1).min(5);
+    Verdict::Restart(Duration::from_millis(100 << doublings))
+}
+
+/// The program `name`, which lies beside the present one.
+pub(crate) fn program(name: &str) -> Result<PathBuf> {
+    let here = std::env::current_exe().context("finding this program's own path")?;
+    let folder = here.parent().unwrap_or(Path::new("."));
+    let path = folder.join(name);
+    if path.is_file() {
+        Ok(path)
+    } else {
+        Err(usage(format!(
+            "{name} is not in {}; build all programs, as deploy/local.sh does",
+            folder.display()
+        )))
+    }
+}
+
+/// "was killed by signal 9", "failed with status 1".
+pub(crate) fn describe(status: ExitStatus) -> String {
+    use std::os::unix::process::ExitStatusExt;
+    match (status.code(), status.signal()) {
+        (Some(0), _) => "ended".to_owned(),
+        (Some(code), _) => format!("failed with status {code}"),
+        (None, Some(signal)) => format!("was killed by signal {signal}"),
+        (None, None) => "ended in an unknown way".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::process::ExitStatusExt;
+
+    const LONG: Duration = Duration::from_secs(60);
+    const SHORT: Duration = Duration::from_secs(1);
+
+    // A wait status holds the signal in its low seven bits and the exit code in the next byte.
+    fn killed() -> ExitStatus {
+        ExitStatus::from_raw(9)
+    }
+
+    fn failed(code: i32) -> ExitStatus {
+        ExitStatus::from_raw(code << 8)
+    }
+
+    #[test]
+    fn a_killed_program_comes_back_at_once_and_then_less_and_less_readily() {
+        let again = |brief_lives| verdict(killed(), SHORT, brief_lives, brief_lives - 1);
+        assert_eq!(again(1), Verdict::Restart(Duration::from_millis(100)));
+        assert_eq!(again(2), Verdict::Restart(Duration::from_millis(200)));
+        assert_eq!(again(4), Verdict::Restart(Duration::from_millis(800)));
+        assert_eq!(again(5), Verdict::GiveUp);
+    }
+
+    #[test]
+    fn a_first_start_that_says_what_is_wrong_is_not_repeated() {
+        assert_eq!(verdict(failed(1), SHORT, 1, 0), Verdict::GiveUp);
+        assert_eq!(verdict(failed(2), SHORT, 1, 0), Verdict::GiveUp);
+        // A panic is a bug, and may be one of chance.
+        assert_ne!(verdict(failed(101), SHORT, 1, 0), Verdict::GiveUp);
+        // Long after the start, the same failure is an accident.
+        assert_ne!(verdict(failed(1), LONG, 1, 0), Verdict::GiveUp);
+        assert_ne!(verdict(failed(1), SHORT, 1, 1), Verdict::GiveUp);
+    }
+
+    #[test]
+    fn who_ends_well_is_not_started_again() {
+        assert_eq!(verdict(failed(0), SHORT, 1, 0), Verdict::Done);
+    }
+
+    #[test]
+    fn ends_are_named() {
+        assert_eq!(describe(killed()), "was killed by signal 9");
+        assert_eq!(describe(failed(3)), "failed with status 3");
+    }
+
+    #[test]
+    fn a_program_that_was_not_built_is_named_with_the_remedy() {
+        let error = program("ampco-nothing").unwrap_err().to_string();
+        assert!(
+            error.contains("ampco-nothing") && error.contains("local.sh"),
+            "{error}"
+        );
+    }
+}

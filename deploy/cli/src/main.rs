@@ -1,0 +1,81 @@
+//! `ampco`: the one command. Trains, joins, looks, evaluates, measures.
+//!
+//! Each subcommand is a module with its arguments and its `run`; this file only chooses.
+
+#![forbid(unsafe_code)]
+
+mod actor;
+mod bench;
+mod child;
+mod console;
+mod evaluate;
+mod failure;
+mod figures;
+mod place;
+mod presets;
+mod resolve;
+mod status;
+mod supervise;
+mod train;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+// As in the learner: `bench learner` is to time the same program.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
+const EXAMPLES: &str = "\
+Examples:
+  ampco train                                     train with the default preset, until Ctrl-C
+  ampco train --minutes 20 --run walk             twenty minutes, in runs/walk
+  ampco train --run walk --resume --minutes 20    twenty more, from the last checkpoint
+  ampco train --preset amp-0.5 --set seed=7       another method, another seed
+  ampco train --set task.kernel=2.0               any key of the configuration
+  ampco status                                    the newest run: how it is going
+  ampco actor --run walk                          lend another core to a running group
+  ampco evaluate walk --command 0.8,0,0 --json    how well the policy walks
+  ampco bench sim                                 how fast this machine simulates
+
+A run lives in runs/<name>/: config.toml (every value, defaults included), metrics.jsonl (a line per
+iteration), logs/, checkpoints/. Exit status: 0 done, 1 failed, 2 bad arguments or configuration.";
+
+/// Teaches the 23-joint Unitree G1 to walk, from reference motion and a task, on ordinary cores.
+#[derive(Parser)]
+#[command(name = "ampco", version, after_help = EXAMPLES, max_term_width = 100)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Train(train::Train),
+    Actor(actor::AddActor),
+    Status(status::Status),
+    Evaluate(evaluate::Evaluate),
+    Bench(bench::Bench),
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    // This is the first thing that could set a log up, so it cannot be refused.
+    let _ = run::log::init_console();
+    let done = match arguments.command {
+        Command::Train(train) => train.run(),
+        Command::Actor(actor) => actor.run(),
+        Command::Status(status) => status.run(),
+        Command::Evaluate(evaluate) => evaluate.run(),
+        Command::Bench(bench) => bench.run(),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // A reader that closed standard error is no reason to fail differently.
+            let _ = writeln!(std::io::stderr(), "ampco: {error:#}");
+            failure::exit_code(&error)
+        }
+    }
+}

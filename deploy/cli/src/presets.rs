@@ -1,0 +1,96 @@
+//! The presets that come with the program, and those that are files.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use run::Config;
+
+use crate::failure::usage;
+
+/// Name and text of each. They are part of the program, so it needs no folder beside it.
+const EMBEDDED: [(&str, &str); 3] = [
+    ("ampco", include_str!("../../presets/ampco.toml")),
+    ("amp-0.5", include_str!("../../presets/amp-0.5.toml")),
+    ("smoke", include_str!("../../presets/smoke.toml")),
+];
+
+/// A preset: what differs from the defaults.
+#[derive(Debug)]
+pub(crate) struct Preset {
+    /// Stem of the names of its runs.
+    pub(crate) name: String,
+    pub(crate) config: Config,
+    /// The folder that its relative paths start from; `None` for one of ours, which has none.
+    pub(crate) folder: Option<PathBuf>,
+}
+
+/// The names, for help and errors.
+pub(crate) fn names() -> Vec<&'static str> {
+    EMBEDDED.iter().map(|(name, _)| *name).collect()
+}
+
+/// One of ours by its name, else a file.
+pub(crate) fn find(given: &str) -> Result<Preset> {
+    if let Some((name, text)) = EMBEDDED.iter().find(|(name, _)| *name == given) {
+        return Ok(Preset {
+            name: (*name).to_owned(),
+            config: Config::parse(text, &format!("preset {name}"))?,
+            folder: None,
+        });
+    }
+    let path = Path::new(given);
+    if !path.is_file() {
+        let remedy = run::nearest::remedy(given, &names());
+        return Err(usage(format!(
+            "there is no preset and no file `{given}`; presets: {remedy}"
+        )));
+    }
+    let path = path
+        .canonicalize()
+        .with_context(|| format!("resolving {given}"))?;
+    Ok(Preset {
+        name: run_stem(&path),
+        config: Config::read(&path)?,
+        folder: path.parent().map(Path::to_owned),
+    })
+}
+
+/// A file's name as a run's name may be.
+fn run_stem(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let plain = |c: char| {
+        if c.is_ascii_alphanumeric() || c == '.' {
+            c
+        } else {
+            '-'
+        }
+    };
+    let stem: String = stem.chars().take(40).map(plain).collect();
+    let stem = stem.trim_matches(['-', '.']);
+    if stem.is_empty() { "run" } else { stem }.to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_misspelt_preset_is_answered_with_the_closest() {
+        let error = find("smok").unwrap_err().to_string();
+        assert!(error.contains("did you mean `smoke`?"), "{error}");
+    }
+
+    #[test]
+    fn a_file_is_a_preset_and_names_its_runs() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("my walk.toml");
+        std::fs::write(&path, "[run]\nseed = 3").unwrap();
+        let preset = find(path.to_str().unwrap()).unwrap();
+        assert_eq!(preset.name, "my-walk");
+        assert_eq!(
+            preset.config.given("run.seed").and_then(|v| v.as_integer()),
+            Some(3)
+        );
+        assert_eq!(preset.folder, Some(folder.path().canonicalize().unwrap()));
+    }
+}

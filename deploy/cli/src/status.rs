@@ -1,0 +1,152 @@
+//! `ampco status`: how a run is going, from its folder alone.
+
+use std::io::Write;
+
+use anyhow::{Context, Result};
+use clap::Args;
+use run::{Folder, RunConfig, metrics};
+use serde_json::{Value, json};
+
+use crate::figures::{Figures, Outlook, count};
+use crate::place::Place;
+
+/// Show how a run is going: its newest figures, who is alive, its checkpoints
+#[derive(Debug, Args)]
+pub(crate) struct Status {
+    /// Name or folder of the run [default: the newest]
+    run: Option<String>,
+    #[command(flatten)]
+    place: Place,
+    /// Print one JSON object instead
+    #[arg(long)]
+    json: bool,
+}
+
+impl Status {
+    pub(crate) fn run(&self) -> Result<()> {
+        let folder = self.place.find(self.run.as_deref())?;
+        let status = status(&folder)?;
+        let mut text = if self.json {
+            status.to_string()
+        } else {
+            describe(&folder, &status)?
+        };
+        text.push('\n');
+        std::io::stdout()
+            .write_all(text.as_bytes())
+            .context("writing to standard output")
+    }
+}
+
+/// Everything, as data.
+fn status(folder: &Folder) -> Result<Value> {
+    let holders = folder.holders()?;
+    let checkpoints = folder.checkpoints();
+    let processes: serde_json::Map<String, Value> = holders
+        .iter()
+        .map(|(role, pid)| {
+            (
+                role.clone(),
+                pid.parse().map_or(Value::Null, |pid: u32| json!(pid)),
+            )
+        })
+        .collect();
+    let newest = metrics::newest(&folder.metrics_path())?.unwrap_or(Value::Null);
+    let figure = |name: &str| newest.get(name).cloned().unwrap_or(Value::Null);
+    Ok(json!({
+        "run": folder.name(),
+        "folder": folder.path(),
+        "alive": processes.contains_key("learner") || processes.contains_key("supervisor"),
+        "iteration": figure("iteration"),
+        "samples": figure("samples"),
+        "samples_per_second": newest["timing"]["samples_per_second"],
+        "phase": figure("phase"),
+        "style_weight": figure("style_weight"),
+        "task_weight": figure("task_weight"),
+        "actors": processes.keys().filter(|role| role.starts_with("actor-")).count(),
+        "processes": processes,
+        "checkpoints": checkpoints.list(),
+        "newest_checkpoint": checkpoints.list().last().map(|at| checkpoints.path(*at)),
+        "metrics": newest,
+    }))
+}
+
+/// The same for a reader.
+fn describe(folder: &Folder, status: &Value) -> Result<String> {
+    let run: RunConfig = folder.config()?.section("run")?;
+    let mut lines = vec![format!(
+        "run {} · {} · {}",
+        folder.name(),
+        if status["alive"] == true {
+            "running"
+        } else {
+            "not running"
+        },
+        folder.path().display()
+    )];
+    lines.push(match Figures::read(&status["metrics"]) {
+        Some(figures) => figures.line(&Outlook {
+            iterations: run.iterations,
+            actors_alive: status["actors"].as_u64().unwrap_or(0) as usize,
+            left: None,
+        }),
+        None => "no iteration yet".to_owned(),
+    });
+    let processes = status["processes"].as_object().into_iter().flatten();
+    let processes: Vec<String> = processes
+        .map(|(role, pid)| format!("{role} {pid}"))
+        .collect();
+    if !processes.is_empty() {
+        lines.push(format!("processes: {}", processes.join(", ")));
+    }
+    let checkpoints = status["checkpoints"].as_array().map_or(0, Vec::len);
+    lines.push(match status["newest_checkpoint"].as_str() {
+        Some(path) => format!("{}, the newest {path}", count(checkpoints, "checkpoint")),
+        None => "no checkpoint".to_owned(),
+    });
+    Ok(lines.join("\n"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_is_described_from_its_folder() {
+        let runs = tempfile::tempdir().unwrap();
+        let folder = Folder::create(runs.path(), "walk").unwrap();
+        std::fs::write(folder.config_path(), "[run]\niterations = 50").unwrap();
+        let empty = status(&folder).unwrap();
+        assert_eq!(empty["alive"], false);
+        assert!(
+            describe(&folder, &empty)
+                .unwrap()
+                .contains("no iteration yet")
+        );
+
+        let record = json!({ "iteration": 7, "samples": 70, "phase": 1, "timing": {} });
+        run::Metrics::open(&folder.metrics_path())
+            .unwrap()
+            .append(&record)
+            .unwrap();
+        folder
+            .checkpoints()
+            .write(5, "shape", &[("part", b"x")])
+            .unwrap();
+        let _learner = folder.lock("learner").unwrap();
+        let (_, _actor) = folder.lock_free_actor(0).unwrap();
+
+        let status = status(&folder).unwrap();
+        assert_eq!(status["alive"], true);
+        assert_eq!(status["iteration"], 7);
+        assert_eq!(status["actors"], 1);
+        assert_eq!(status["processes"]["learner"], std::process::id());
+        assert_eq!(status["checkpoints"], json!([5]));
+        let words = describe(&folder, &status).unwrap();
+        assert!(
+            words.contains("iteration 7/50") && words.contains("1 actor alive"),
+            "{words}"
+        );
+        assert!(words.contains("1 checkpoint, the newest"), "{words}");
+    }
+}

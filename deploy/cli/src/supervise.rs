@@ -1,0 +1,448 @@
+//! The process group: started, watched, restarted, ended in order, cleaned up after.
+//!
+//! One thread and one loop. The thread matters: the kernel ties a child's life to the thread that
+//! started it. The loop waits for signals, for words of the children and for the next look.
+
+use std::ffi::OsString;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, anyhow};
+use protocol::Domain;
+use run::metrics::Tail;
+use run::{FleetConfig, Folder, RunConfig};
+use rustix::process::{Pid, Signal, kill_process};
+use tokio::signal::unix::{Signal as Signals, SignalKind, signal};
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+use tokio::time::{MissedTickBehavior, interval};
+
+use crate::child::{self, Child, Verdict, Words};
+use crate::console::Console;
+use crate::figures::{Outlook, Pace, clock, count};
+
+/// Between two looks at the children.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Between two looks at the metrics.
+const GLANCE: Duration = Duration::from_millis(500);
+
+/// Actors that the learner has told to save and stop get this long before they are told again.
+const GRACE: Duration = Duration::from_secs(5);
+
+const LEARNER: &str = "learner";
+const SCHEDULER: &str = "scheduler";
+
+/// What is to be supervised.
+#[derive(Debug)]
+pub(crate) struct Launch<'a> {
+    pub(crate) folder: &'a Folder,
+    pub(crate) run: &'a RunConfig,
+    pub(crate) fleet: &'a FleetConfig,
+    /// Whether the learner goes on from a checkpoint.
+    pub(crate) resume: bool,
+}
+
+/// Why the group ends.
+#[derive(Debug)]
+enum Reason {
+    /// The learner has done all iterations.
+    Complete,
+    /// The minutes are over.
+    TimeUp,
+    /// Ctrl-C or SIGTERM.
+    Asked,
+    /// A process cannot be kept alive.
+    Failed(anyhow::Error),
+}
+
+/// Starts the group, watches it to its end, and leaves nothing behind.
+pub(crate) fn supervise(launch: &Launch<'_>) -> Result<()> {
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .context("starting the supervisor's loop")?;
+    runtime.block_on(async {
+        let mut stop = Stop::install()?;
+        let domain = Domain::for_run(launch.folder.path())?;
+        // A machine that crashed leaves files whose memory is gone.
+        domain
+            .remove()
+            .context("clearing what an earlier group left")?;
+        let mut group = Group::new(launch, domain)?;
+        let reason = group.watch(&mut stop).await;
+        group.end(reason, &mut stop).await
+    })
+}
+
+/// The signals that ask for the end. A closed terminal asks too.
+struct Stop {
+    interrupt: Signals,
+    terminate: Signals,
+    hangup: Signals,
+}
+
+impl Stop {
+    fn install() -> Result<Self> {
+        let install = |kind| signal(kind).context("installing the handlers of signals");
+        Ok(Self {
+            interrupt: install(SignalKind::interrupt())?,
+            terminate: install(SignalKind::terminate())?,
+            hangup: install(SignalKind::hangup())?,
+        })
+    }
+
+    async fn requested(&mut self) {
+        tokio::select! {
+            _ = self.interrupt.recv() => {}
+            _ = self.terminate.recv() => {}
+            _ = self.hangup.recv() => {}
+        }
+    }
+}
+
+struct Group<'a> {
+    launch: &'a Launch<'a>,
+    domain: Domain,
+    children: Vec<Child>,
+    words: UnboundedReceiver<Words>,
+    console: Console,
+    tail: Tail,
+    pace: Pace,
+    started: Instant,
+    glanced: Instant,
+    /// The end was asked for once more: nobody is waited for.
+    forced: bool,
+}
+
+impl<'a> Group<'a> {
+    fn new(launch: &'a Launch<'a>, domain: Domain) -> Result<Self> {
+        let (sender, words) = unbounded_channel();
+        let metrics = launch.folder.metrics_path();
+        let now = Instant::now();
+        Ok(Self {
+            launch,
+            domain,
+            children: children(launch, &sender)?,
+            words,
+            console: Console::new(),
+            tail: if launch.resume {
+                Tail::from_end(&metrics)
+            } else {
+                Tail::from_start(&metrics)
+            },
+            pace: Pace::default(),
+            started: now,
+            glanced: now,
+            forced: false,
+        })
+    }
+
+    async fn watch(&mut self, stop: &mut Stop) -> Reason {
+        let mut looks = interval(LOOK);
+        looks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        loop {
+            tokio::select! {
+                () = stop.requested() => return Reason::Asked,
+                Some(words) = self.words.recv() => self.relay(&words),
+                _ = looks.tick() => match self.look(Instant::now()) {
+                    Ok(None) => {}
+                    Ok(Some(reason)) => return reason,
+                    Err(error) => return Reason::Failed(error),
+                },
+            }
+        }
+    }
+
+    /// One look: who died, who is due, what the metrics say, whether time is up.
+    fn look(&mut self, now: Instant) -> Result<Option<Reason>> {
+        for index in 0..self.children.len() {
+            let Some((status, verdict)) = self.children[index].died(now)? else {
+                continue;
+            };
+            let child = &mut self.children[index];
+            let end = child::describe(status);
+            match verdict {
+                Verdict::Done if child.role == LEARNER => return Ok(Some(Reason::Complete)),
+                Verdict::Done if child.role == SCHEDULER => {
+                    child.start_again_at(now);
+                    self.console.say("scheduler ended; starting it again");
+                }
+                Verdict::Done => {
+                    let message = format!("{} ended; the others go on", child.role);
+                    self.console.say(&message);
+                }
+                Verdict::Restart(_) => {
+                    child.restarts += 1;
+                    let message = format!("{} {end}; restart {}", child.role, child.restarts);
+                    self.console.say(&message);
+                }
+                Verdict::GiveUp => {
+                    let log = self
+                        .launch
+                        .folder
+                        .logs()
+                        .join(format!("{}.log", child.role));
+                    let error = anyhow!(
+                        "{} {end} and is given up; see {}",
+                        child.role,
+                        log.display()
+                    );
+                    return Ok(Some(Reason::Failed(error)));
+                }
+            }
+        }
+        for child in &mut self.children {
+            if child.is_due(now) {
+                if child.role == LEARNER && child.restarts > 0 {
+                    child.arguments = learner_arguments(self.launch, has_checkpoint(self.launch));
+                }
+                child.start(now)?;
+            }
+        }
+        if now - self.glanced >= GLANCE {
+            self.glanced = now;
+            self.glance()?;
+            self.show(now);
+        }
+        let up = self.time_left(now).is_some_and(|left| left.is_zero());
+        Ok(up.then_some(Reason::TimeUp))
+    }
+
+    /// Ends everyone in order: the learner first, since it tells the actors to save.
+    async fn end(mut self, reason: Reason, stop: &mut Stop) -> Result<()> {
+        if !matches!(reason, Reason::Complete) {
+            self.console.say(match &reason {
+                Reason::TimeUp => "time is up: finishing the iteration",
+                Reason::Failed(_) => "ending the group",
+                _ => "ending: finishing the iteration (once more to kill at once)",
+            });
+        }
+        let patience = Duration::from_secs_f64(self.launch.run.deadlines.stop_seconds);
+        for child in &mut self.children {
+            child.retire();
+        }
+        self.signal(Signal::TERM, |role| role == LEARNER);
+        let saved = self
+            .until_ended(patience, stop, |role| role == LEARNER)
+            .await?;
+        if saved && !matches!(reason, Reason::Failed(_)) {
+            self.until_ended(GRACE.min(patience), stop, is_actor)
+                .await?;
+        }
+        self.signal(Signal::TERM, |role| role != LEARNER);
+        self.until_ended(patience, stop, |role| role != LEARNER)
+            .await?;
+        let killed = self.alive(|_| true);
+        self.signal(Signal::KILL, |_| true);
+        self.forced = false;
+        self.until_ended(GRACE, stop, |_| true).await?;
+
+        while let Ok(words) = self.words.try_recv() {
+            self.relay(&words);
+        }
+        self.glance()?;
+        self.show(Instant::now());
+        self.console.finish();
+        self.domain
+            .remove()
+            .context("removing the run's shared memory")?;
+        self.report(&reason, &killed);
+        match reason {
+            Reason::Failed(error) => Err(error),
+            _ => Ok(()),
+        }
+    }
+
+    /// Waits until nobody of those meant is alive; false when some are still after `patience`, or
+    /// when the end was asked for once more.
+    async fn until_ended(
+        &mut self,
+        patience: Duration,
+        stop: &mut Stop,
+        meant: impl Fn(&str) -> bool,
+    ) -> Result<bool> {
+        let until = Instant::now()
+            + if self.forced {
+                Duration::ZERO
+            } else {
+                patience
+            };
+        let mut looks = interval(LOOK);
+        loop {
+            tokio::select! {
+                () = stop.requested() => {
+                    self.forced = true;
+                    return Ok(self.alive(&meant).is_empty());
+                }
+                Some(words) = self.words.recv() => self.relay(&words),
+                _ = looks.tick() => {
+                    let now = Instant::now();
+                    for child in &mut self.children {
+                        child.died(now)?;
+                        child.retire();
+                    }
+                    if self.alive(&meant).is_empty() {
+                        return Ok(true);
+                    }
+                    if now >= until {
+                        return Ok(false);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The roles meant that are alive: our children, and actors that others have added.
+    fn alive(&self, meant: impl Fn(&str) -> bool) -> Vec<String> {
+        let ours = self.children.iter().filter(|child| child.is_running());
+        let ours = ours.map(|child| child.role.clone());
+        let others = self.others().into_iter().map(|(role, _)| role);
+        ours.chain(others).filter(|role| meant(role)).collect()
+    }
+
+    /// Actors of this run that are not our children, with their process ids.
+    fn others(&self) -> Vec<(String, String)> {
+        // A folder that cannot be read now hides nobody for long: this is asked again and again.
+        let mut holders = self.launch.folder.holders().unwrap_or_default();
+        let ours = |role: &str| self.children.iter().any(|child| child.role == role);
+        holders.retain(|(role, _)| is_actor(role) && !ours(role));
+        holders
+    }
+
+    fn signal(&self, signal: Signal, meant: impl Fn(&str) -> bool) {
+        for child in self.children.iter().filter(|child| meant(&child.role)) {
+            child.signal(signal);
+        }
+        for (_, pid) in self.others().iter().filter(|(role, _)| meant(role)) {
+            if let Some(pid) = pid.parse().ok().and_then(Pid::from_raw) {
+                // It may have ended a moment ago.
+                let _ = kill_process(pid, signal);
+            }
+        }
+    }
+
+    fn glance(&mut self) -> Result<()> {
+        for line in self.tail.poll().context("following the metrics")? {
+            self.pace.take(&line);
+        }
+        Ok(())
+    }
+
+    fn show(&mut self, now: Instant) {
+        let outlook = Outlook {
+            iterations: self.launch.run.iterations,
+            actors_alive: self.alive(is_actor).len(),
+            left: self.left(now),
+        };
+        let line = match &self.pace.newest {
+            Some(figures) => figures.line(&outlook),
+            None => format!(
+                "no iteration yet · {} alive · {}",
+                count(outlook.actors_alive, "actor"),
+                clock(now - self.started)
+            ),
+        };
+        self.console.show(&line, now);
+    }
+
+    /// Time until the end, whichever comes first.
+    fn left(&self, now: Instant) -> Option<Duration> {
+        let by_pace = self.pace.until(self.launch.run.iterations);
+        [self.time_left(now), by_pace].into_iter().flatten().min()
+    }
+
+    /// Time until the minutes are over, if they are limited.
+    fn time_left(&self, now: Instant) -> Option<Duration> {
+        let minutes = self.launch.run.minutes;
+        if minutes == 0.0 {
+            return None;
+        }
+        let limit = Duration::from_secs_f64(minutes * 60.0);
+        Some(limit.saturating_sub(now - self.started))
+    }
+
+    fn relay(&mut self, (role, line): &Words) {
+        if line.starts_with("ampco-") {
+            self.console.say(line);
+        } else {
+            self.console.say(&format!("{role}: {}", line.trim_start()));
+        }
+    }
+
+    fn report(&mut self, reason: &Reason, killed: &[String]) {
+        let what = match reason {
+            Reason::Complete => "complete",
+            Reason::TimeUp | Reason::Asked => "ended",
+            Reason::Failed(_) => "failed",
+        };
+        let run = self.launch.folder.name();
+        let mut report = format!("run {run} {what} after {}", clock(self.started.elapsed()));
+        if let Some(figures) = &self.pace.newest {
+            report += &format!(
+                " at iteration {}, {} samples",
+                figures.iteration, figures.samples
+            );
+        }
+        report += &match self.launch.folder.checkpoints().list().last() {
+            Some(iteration) => format!("; last checkpoint {iteration:08}"),
+            None => "; no checkpoint".to_owned(),
+        };
+        let left = self.alive(|_| true);
+        report += &match (left.as_slice(), killed) {
+            ([], []) => "; all processes ended, shared memory removed".to_owned(),
+            ([], killed) => format!("; killed: {}; shared memory removed", killed.join(", ")),
+            (left, _) => format!("; still alive: {}", left.join(", ")),
+        };
+        self.console.say(&report);
+    }
+}
+
+fn is_actor(role: &str) -> bool {
+    role.starts_with("actor-")
+}
+
+/// Scheduler, learner and actors of a launch; any order would do.
+fn children(launch: &Launch<'_>, words: &UnboundedSender<Words>) -> Result<Vec<Child>> {
+    let child = |role: String, program: &str, arguments| -> Result<Child> {
+        Ok(Child::new(
+            role,
+            child::program(program)?,
+            arguments,
+            words.clone(),
+        ))
+    };
+    let mut children = vec![
+        child(
+            SCHEDULER.to_owned(),
+            "ampco-scheduler",
+            run_dir(launch.folder),
+        )?,
+        child(
+            LEARNER.to_owned(),
+            "ampco-learner",
+            learner_arguments(launch, launch.resume),
+        )?,
+    ];
+    for index in 0..launch.fleet.actors {
+        let mut arguments = run_dir(launch.folder);
+        arguments.extend(["--index".into(), index.to_string().into()]);
+        children.push(child(format!("actor-{index}"), "ampco-actor", arguments)?);
+    }
+    Ok(children)
+}
+
+fn learner_arguments(launch: &Launch<'_>, resume: bool) -> Vec<OsString> {
+    let mut arguments = run_dir(launch.folder);
+    if resume {
+        arguments.push("--resume".into());
+    }
+    arguments
+}
+
+/// The argument that every program of the group takes.
+pub(crate) fn run_dir(folder: &Folder) -> Vec<OsString> {
+    vec!["--run-dir".into(), folder.path().into()]
+}
+
+fn has_checkpoint(launch: &Launch<'_>) -> bool {
+    !launch.folder.checkpoints().list().is_empty()
+}

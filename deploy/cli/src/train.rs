@@ -1,0 +1,212 @@
+//! `ampco train`: from options to a running group.
+
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use motion::Dataset;
+use protocol::RolloutLayout;
+use run::{Config, Folder};
+
+use crate::failure::usage;
+use crate::place::Place;
+use crate::presets;
+use crate::resolve::{self, Resolved};
+use crate::supervise::{self, Launch};
+
+/// Train: start scheduler, learner and actors, watch them, end them in order on Ctrl-C
+///
+/// Without --run the run is named after its preset and numbered. Everything is checked before
+/// anything starts. A live line shows how it goes; metrics and logs are in the run's folder.
+#[derive(Debug, Args)]
+pub(crate) struct Train {
+    /// Preset: ampco, amp-0.5, smoke, or a TOML file of your own [default: ampco]
+    #[arg(long, value_name = "NAME|FILE")]
+    preset: Option<String>,
+    /// Name of the run, a new one unless --resume [default: the preset's, numbered]
+    #[arg(long, value_name = "NAME")]
+    run: Option<String>,
+    #[command(flatten)]
+    place: Place,
+    /// Actor processes [default: one per core]
+    #[arg(long, value_name = "N")]
+    actors: Option<u32>,
+    /// End at this iteration, counted from the run's first
+    #[arg(long, value_name = "N")]
+    iterations: Option<u32>,
+    /// End after so many minutes
+    #[arg(long, value_name = "M")]
+    minutes: Option<f64>,
+    /// Set one value of the configuration, as in ppo.epochs=4 or seed=7; may be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Go on from the last checkpoint of --run, or of the newest run
+    #[arg(long)]
+    resume: bool,
+}
+
+impl Train {
+    pub(crate) fn run(&self) -> Result<()> {
+        let (folder, config, resolved) = if self.resume {
+            self.resumed()?
+        } else {
+            self.new_run()?
+        };
+        let _supervisor = folder.lock("supervisor")?;
+        if !self.resume && has_history(&folder) {
+            // Looked at again under the lock: another start may have been quicker.
+            return Err(taken(&folder));
+        }
+        let comment = format!(
+            "Resolved configuration of run {}: every value, defaults included.\n\
+             Written by `ampco train` at each start; change values with --set.",
+            folder.name()
+        );
+        config.write(&folder.config_path(), &comment)?;
+        say(&format!(
+            "run {} in {} · {} actors × {} environments × {} steps · Ctrl-C ends it in order",
+            folder.name(),
+            folder.path().display(),
+            resolved.fleet.actors,
+            resolved.fleet.environments_per_actor(),
+            resolved.fleet.steps,
+        ));
+        supervise::supervise(&Launch {
+            folder: &folder,
+            run: &resolved.run,
+            fleet: &resolved.fleet,
+            resume: self.resume,
+        })
+    }
+
+    fn new_run(&self) -> Result<(Folder, Config, Resolved)> {
+        let preset = presets::find(self.preset.as_deref().unwrap_or("ampco"))?;
+        let mut config = preset.config;
+        self.apply(&mut config)?;
+        let file = self
+            .preset
+            .as_deref()
+            .and_then(|given| Path::new(given).canonicalize().ok());
+        let file = file.map(|path| path.display().to_string());
+        resolve::anchor_files(&mut config, file.as_deref().zip(preset.folder.as_deref()))?;
+        let resolved = checked(&mut config)?;
+        let name = match &self.run {
+            Some(name) => name.clone(),
+            None => self.place.free_name(&preset.name),
+        };
+        let folder =
+            Folder::create(&self.place.runs_dir, &name).context("making the run's folder")?;
+        if has_history(&folder) {
+            return Err(taken(&folder));
+        }
+        Ok((folder, config, resolved))
+    }
+
+    fn resumed(&self) -> Result<(Folder, Config, Resolved)> {
+        let folder = self.place.find(self.run.as_deref())?;
+        if folder.checkpoints().list().is_empty() {
+            bail!("run {} has no checkpoint to resume from", folder.name());
+        }
+        if self.preset.is_some() {
+            say("--preset is passed over: a resumed run keeps its own configuration (see --set)");
+        }
+        let mut config = folder.config()?;
+        self.apply(&mut config)?;
+        resolve::anchor_files(&mut config, None)?;
+        let resolved = checked(&mut config)?;
+        Ok((folder, config, resolved))
+    }
+
+    /// Lays the options over what is there.
+    fn apply(&self, config: &mut Config) -> Result<()> {
+        for assignment in &self.set {
+            config.set(assignment)?;
+        }
+        if let Some(actors) = self.actors {
+            if actors == 0 {
+                return Err(usage(
+                    "--actors 0: a group needs at least one; leave it out for one per core",
+                ));
+            }
+            config.put(
+                "fleet.actors",
+                i64::from(actors),
+                &format!("--actors {actors}"),
+            );
+        }
+        // One of the two given alone lifts the other: "twenty minutes" means whatever fits in them.
+        if let Some(iterations) = self.iterations {
+            let origin = format!("--iterations {iterations}");
+            config.put("run.iterations", i64::from(iterations), &origin);
+            if self.minutes.is_none() {
+                config.put("run.minutes", 0.0, &origin);
+            }
+        }
+        if let Some(minutes) = self.minutes {
+            let origin = format!("--minutes {minutes}");
+            config.put("run.minutes", minutes, &origin);
+            if self.iterations.is_none() {
+                config.put("run.iterations", 0, &origin);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Resolves, reads the reference motion, and asks the machine whether it can do it.
+fn checked(config: &mut Config) -> Result<Resolved> {
+    let resolved = resolve::resolve(config)?;
+    // Files are absolute by now, so the folder they would start from does not matter.
+    if let Err(error) = Dataset::load(&resolved.motion, Path::new(".")) {
+        // Its causes belong to the line: which row of which file.
+        let causes = format!("{:#}", anyhow::Error::from(error));
+        return Err(config.refuse("motion", causes).into());
+    }
+    let layout = RolloutLayout {
+        environments: resolved.fleet.environments_per_actor(),
+        steps: resolved.fleet.steps,
+    };
+    let shape = policy::Shape {
+        hidden: resolved.policy.hidden.clone(),
+    };
+    let needed = protocol::reserved_bytes(resolved.fleet.actors, layout, shape.len());
+    let free = free_shared_memory()?;
+    if needed > free {
+        bail!(
+            "the group needs {} MB of shared memory and /dev/shm has {} MB free; use fewer \
+             fleet.environments or fleet.steps, or make room",
+            needed.div_ceil(1_000_000),
+            free / 1_000_000
+        );
+    }
+    Ok(resolved)
+}
+
+/// Bytes free in /dev/shm.
+fn free_shared_memory() -> Result<u64> {
+    let facts = rustix::fs::statvfs("/dev/shm").context("measuring free space of /dev/shm")?;
+    // A tmpfs without a limit reports no blocks at all.
+    Ok(match facts.f_blocks {
+        0 => u64::MAX,
+        _ => facts.f_bavail.saturating_mul(facts.f_frsize),
+    })
+}
+
+/// Whether something has been learned in this folder that a new run would overwrite.
+fn has_history(folder: &Folder) -> bool {
+    let metrics = std::fs::metadata(folder.metrics_path());
+    metrics.is_ok_and(|file| file.len() > 0) || !folder.checkpoints().list().is_empty()
+}
+
+fn taken(folder: &Folder) -> anyhow::Error {
+    let name = folder.name();
+    usage(format!(
+        "run {name} exists already: go on with `--run {name} --resume`, or choose another name"
+    ))
+}
+
+fn say(message: &str) {
+    use std::io::Write;
+    // Whoever watched may have closed the terminal.
+    let _ = writeln!(std::io::stderr(), "{message}");
+}
