@@ -41,7 +41,7 @@ impl Replay {
 
     /// Whether its parts fit each other; a decoded one may lie.
     pub(crate) fn is_sound(&self) -> bool {
-        self.rows.len() % TRANSITION == 0
+        self.rows.len().is_multiple_of(TRANSITION)
             && self.len() <= self.capacity
             && (self.next == self.len()
                 || (self.len() == self.capacity && self.next < self.capacity))

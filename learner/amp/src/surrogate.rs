@@ -101,9 +101,9 @@ mod tests {
             rows([1.0, 3.0]),
             rows([0.5_f32.ln(), 0.0]),
         );
-        assert!((values(density)[0] + 1.644_730).abs() < 1e-5);
+        assert!((values(density)[0] + 1.644_73).abs() < 1e-5);
         // entropy: ln ½ + 0 + 2·(½ + 0.918939) = −0.693147 + 2.837877
-        assert!((values(entropy(rows([0.5_f32.ln(), 0.0])))[0] - 2.144_730).abs() < 1e-5);
+        assert!((values(entropy(rows([0.5_f32.ln(), 0.0])))[0] - 2.144_73).abs() < 1e-5);
     }
 
     #[test]

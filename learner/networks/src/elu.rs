@@ -12,7 +12,7 @@ pub(crate) fn elu(x: f32) -> f32 {
     /// Adding 1.5·2²³ rounds a small number to an integer, which then stands in the lowest bits.
     const ROUNDING: f32 = 12_582_912.0;
     /// ln 2 in two parts; the first has few bits, so that n times it is exact.
-    const LN_2_HIGH: f32 = 0.693_359_375;
+    const LN_2_HIGH: f32 = 355.0 / 512.0;
     const LN_2_LOW: f32 = -2.121_944_4e-4;
     /// From here down eˣ is lost beside 1, and 2ⁿ is still a normal number.
     const LOWEST: f32 = -80.0;

@@ -1,1 +1,121 @@
+//! The discriminator on cases whose answer is known.
 
+use super::*;
+use crate::config::LearningConfig;
+use crate::robot::tests::simple;
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64;
+
+fn discriminator(config: &DiscriminatorConfig, threads: usize) -> Discriminator {
+    Discriminator::new(
+        config,
+        &simple().features,
+        threads,
+        &mut Pcg64::seed_from_u64(1),
+    )
+}
+
+fn small() -> DiscriminatorConfig {
+    DiscriminatorConfig {
+        hidden: vec![32, 16],
+        batch: 128,
+        steps: 4,
+        learning_rate: 1e-3,
+        gradient_penalty: 1.0,
+        ..LearningConfig::default().discriminator
+    }
+}
+
+fn gaussian(rows: usize, mean: f32, rng: &mut Pcg64) -> Vec<f32> {
+    (0..rows * TRANSITION)
+        .map(|_| mean + 0.5 * Distribution::<f32>::sample(&StandardNormal, rng))
+        .collect()
+}
+
+fn mean_score(judge: &Discriminator, rows: &[f32]) -> f32 {
+    let mut scores = Vec::new();
+    judge.scores(rows, &mut scores);
+    scores.iter().sum::<f32>() / scores.len() as f32
+}
+
+#[test]
+fn two_gaussians_are_told_apart() {
+    let mut judge = discriminator(&small(), 2);
+    let mut rng = Pcg64::seed_from_u64(2);
+    let mut figures = Figures::default();
+    for _ in 0..40 {
+        let experts = gaussian(512, 0.3, &mut rng);
+        let policy = gaussian(512, -0.3, &mut rng);
+        figures = judge.update(&experts, &policy).expect("finite");
+    }
+    let (expert, policy) = (
+        mean_score(&judge, &gaussian(200, 0.3, &mut rng)),
+        mean_score(&judge, &gaussian(200, -0.3, &mut rng)),
+    );
+    // The penalty keeps the scores from ±1.
+    assert!(expert > 0.6 && policy < -0.6, "{expert} {policy}");
+    assert!(figures.expert_score > 0.6 && figures.policy_score < -0.6);
+    assert!(figures.loss < 0.5);
+}
+
+#[test]
+fn a_heavy_penalty_flattens_the_judge() {
+    let after = |penalty: f32| {
+        let config = DiscriminatorConfig {
+            gradient_penalty: penalty,
+            ..small()
+        };
+        let mut judge = discriminator(&config, 1);
+        let mut rng = Pcg64::seed_from_u64(3);
+        let mut last = 0.0;
+        for _ in 0..30 {
+            let (experts, policy) = (gaussian(512, 0.3, &mut rng), gaussian(512, -0.3, &mut rng));
+            last = judge
+                .update(&experts, &policy)
+                .expect("finite")
+                .gradient_penalty;
+        }
+        last
+    };
+    let (free, heavy) = (after(0.0), after(100.0));
+    assert!(heavy < 0.2 * free, "{free} {heavy}");
+}
+
+#[test]
+fn parts_of_a_step_add_up() {
+    // Loss and gradient of the whole step are those of its two halves together.
+    let judge = discriminator(&small(), 1);
+    let mut rng = Pcg64::seed_from_u64(4);
+    let (experts, policy) = (gaussian(20, 0.3, &mut rng), gaussian(20, -0.3, &mut rng));
+    let whole = judge.differentiate(&experts, &policy, 0..20);
+    let halves = [0..10, 10..20].map(|part| judge.differentiate(&experts, &policy, part));
+    assert!((whole.loss - halves[0].loss - halves[1].loss).abs() < 1e-5);
+    for i in 0..whole.gradient.len() {
+        let sum = halves[0].gradient[i] + halves[1].gradient[i];
+        assert!((whole.gradient[i] - sum).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn features_are_scaled_alike_in_both_states() {
+    let mut judge = discriminator(&small(), 1);
+    let mut rng = Pcg64::seed_from_u64(5);
+    judge.observe(&gaussian(100, 2.0, &mut rng));
+    let scaling = judge.scaling();
+    assert_eq!(scaling.mean.len(), TRANSITION);
+    assert_eq!(scaling.mean[..FEATURES], scaling.mean[FEATURES..]);
+    assert_eq!(scaling.inverse[..FEATURES], scaling.inverse[FEATURES..]);
+    assert!((scaling.mean[0] - 2.0).abs() < 0.2);
+}
+
+#[test]
+fn what_becomes_infinite_is_named() {
+    let mut judge = discriminator(&small(), 2);
+    let mut rng = Pcg64::seed_from_u64(6);
+    let (mut experts, policy) = (gaussian(128, 0.3, &mut rng), gaussian(128, -0.3, &mut rng));
+    experts[7] = f32::NAN;
+    let fault = judge.update(&experts, &policy).expect_err("NaN");
+    assert_eq!(fault.what, "discriminator loss");
+    assert_eq!(judge.name(0), "discriminator.layers.0.weight");
+}
