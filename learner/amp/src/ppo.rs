@@ -3,20 +3,22 @@
 //! Rows of a minibatch are divided among threads, each with its own copy of the networks; gradients are added in the
 //! order of threads, clipped as a whole, and taken by one optimizer. Actor, critic and ln σ lie in one flat vector.
 
+mod part;
+
 use crate::config::{
     AdvantageNormalization, ExplorationKind, LearningConfig, PpoConfig, RateSchedule,
 };
 use crate::error::Fault;
-use crate::inference::CHUNK;
-use crate::minibatch::{Order, is_mirrored, split};
+use crate::minibatch::{Order, split};
 use crate::report::moments;
 use crate::robot::{JointGroup, Mirror};
 use crate::{ACTION, OBSERVATION, exploration, surrogate};
 use burn::tensor::Tensor;
 use networks::{
-    Activation, Adam, AdamConfig, Mlp, Shape, clip_norm, first_not_finite, orthogonal, shards,
-    tensor, tracked_device, values,
+    Activation, Adam, AdamConfig, Shape, clip_norm, first_not_finite, orthogonal, shards, tensor,
+    tracked_device, values,
 };
+use part::Minibatch;
 use rand::Rng;
 use std::ops::Range;
 
@@ -72,27 +74,6 @@ pub struct Ppo {
     adam: Adam,
     rate: f32,
     order: Order,
-}
-
-/// Sums over the rows of one minibatch, or of a shard of it.
-#[derive(Clone, Debug, Default)]
-struct Sums {
-    gradient: Vec<f32>,
-    surrogate: f64,
-    value_loss: f64,
-    kl: f64,
-    kl_rows: usize,
-    clipped: usize,
-}
-
-/// What all shards of a minibatch have in common.
-struct Minibatch<'a> {
-    rows: &'a Rows<'a>,
-    indices: &'a [usize],
-    old_sigma: &'a [f32],
-    /// Advantages become (A − shift)·scale.
-    shift: f32,
-    scale: f32,
 }
 
 impl Ppo {
@@ -294,130 +275,6 @@ impl Ppo {
         })
     }
 
-    /// Gradient and figures of a part of a minibatch.
-    fn differentiate(&self, minibatch: &Minibatch<'_>, part: Range<usize>, sigma: &[f32]) -> Sums {
-        let device = tracked_device();
-        let network =
-            |shape, weights| Mlp::new(shape, weights, &device).expect("weights of this shape");
-        let actor = network(&self.actor, self.actor());
-        let critic = network(&self.critic, self.critic());
-        let log_sigma = self.log_sigma_tensor(sigma);
-        let new_sigma: Vec<f32> = values(log_sigma.clone())
-            .iter()
-            .map(|log| log.exp())
-            .collect();
-        let count = minibatch.indices.len();
-        let mut sums = Sums {
-            gradient: vec![0.0; self.weights.len()],
-            ..Sums::default()
-        };
-        let (actor_gradient, rest) = sums.gradient.split_at_mut(self.actor.len());
-        let (critic_gradient, sigma_gradient) = rest.split_at_mut(self.critic.len());
-        for piece in shards::pieces(part, CHUNK) {
-            let chunk = self.gather(minibatch, piece);
-            let rows = |numbers: &[f32], columns| tensor(numbers.to_vec(), columns, &device);
-            let observations = tensor(chunk.observations, OBSERVATION, &device);
-
-            let means = actor.forward(observations.clone());
-            let density = surrogate::log_density(
-                rows(&chunk.actions, ACTION),
-                means.clone(),
-                log_sigma.clone(),
-            );
-            let loss = surrogate::clipped_surrogate(
-                density.clone(),
-                rows(&chunk.log_probs, 1),
-                tensor(chunk.advantages, 1, &device),
-                self.config.clip,
-                count,
-            );
-            sums.surrogate += f64::from(values(loss.clone())[0]);
-            let share = chunk.log_probs.len() as f32 / count as f32;
-            let loss = match self.log_sigma_limits {
-                Some(_) => {
-                    let bonus = self.config.entropy_coefficient * share;
-                    loss - surrogate::entropy(log_sigma.clone()) * bonus
-                }
-                None => loss,
-            };
-            let mut gradients = loss.backward();
-            actor.add_gradients(&mut gradients, actor_gradient);
-            if let Some(gradient) = log_sigma.grad_remove(&mut gradients) {
-                sigma_gradient
-                    .iter_mut()
-                    .zip(values(gradient))
-                    .for_each(|(a, b)| *a += b);
-            }
-
-            let loss = surrogate::value_loss(
-                critic.forward(observations),
-                tensor(chunk.values, 1, &device),
-                tensor(chunk.returns, 1, &device),
-                self.config.value_clip,
-                count,
-            );
-            sums.value_loss += f64::from(values(loss.clone())[0]);
-            let mut gradients = (loss * self.config.value_coefficient).backward();
-            critic.add_gradients(&mut gradients, critic_gradient);
-
-            let (means, densities) = (values(means), values(density));
-            for (i, mirrored) in chunk.mirrored.iter().enumerate() {
-                let ratio = (densities[i] - chunk.log_probs[i]).exp();
-                sums.clipped += usize::from((ratio - 1.0).abs() > self.config.clip);
-                if !mirrored {
-                    let action = i * ACTION..(i + 1) * ACTION;
-                    sums.kl += surrogate::divergence(
-                        &chunk.means[action.clone()],
-                        minibatch.old_sigma,
-                        &means[action],
-                        &new_sigma,
-                    );
-                    sums.kl_rows += 1;
-                }
-            }
-        }
-        sums
-    }
-
-    /// Copies rows together, mirrored where it is their turn.
-    ///
-    /// A mirrored row keeps its log-density and advantage: it stands for what the mirrored robot would have met.
-    fn gather(&self, minibatch: &Minibatch<'_>, piece: Range<usize>) -> Chunk {
-        let Minibatch { rows, indices, .. } = minibatch;
-        let mut chunk = Chunk::with_capacity(piece.len());
-        for position in piece {
-            let row = indices[position];
-            let mirrored = is_mirrored(position, self.config.mirrored_share);
-            let observation = row * OBSERVATION..(row + 1) * OBSERVATION;
-            let action = row * ACTION..(row + 1) * ACTION;
-            if mirrored {
-                chunk
-                    .observations
-                    .extend_from_slice(&rows.mirrored[observation]);
-                let mut out = [0.0; ACTION];
-                self.mirror.apply(&rows.actions[action], &mut out);
-                chunk.actions.extend_from_slice(&out);
-                chunk.means.extend_from_slice(&[0.0; ACTION]); // not read: KL is that of rows as they were
-            } else {
-                chunk
-                    .observations
-                    .extend_from_slice(&rows.observations[observation]);
-                chunk
-                    .actions
-                    .extend_from_slice(&rows.actions[action.clone()]);
-                chunk.means.extend_from_slice(&rows.means[action]);
-            }
-            chunk.mirrored.push(mirrored);
-            chunk.log_probs.push(rows.log_probs[row]);
-            chunk
-                .advantages
-                .push((rows.advantages[row] - minibatch.shift) * minibatch.scale);
-            chunk.returns.push(rows.returns[row]);
-            chunk.values.push(rows.values[row]);
-        }
-        chunk
-    }
-
     /// ln σ `[1, 23]`: a differentiable weight if it is learned, else that of the given σ.
     fn log_sigma_tensor(&self, sigma: &[f32]) -> Tensor<2> {
         let device = tracked_device();
@@ -483,34 +340,6 @@ struct StepSums {
     kl_rows: usize,
     clipped: usize,
     norm: f64,
-}
-
-/// Rows copied together.
-struct Chunk {
-    observations: Vec<f32>,
-    actions: Vec<f32>,
-    means: Vec<f32>,
-    log_probs: Vec<f32>,
-    advantages: Vec<f32>,
-    returns: Vec<f32>,
-    values: Vec<f32>,
-    mirrored: Vec<bool>,
-}
-
-impl Chunk {
-    fn with_capacity(rows: usize) -> Self {
-        let column = || Vec::with_capacity(rows);
-        Self {
-            observations: Vec::with_capacity(rows * OBSERVATION),
-            actions: Vec::with_capacity(rows * ACTION),
-            means: Vec::with_capacity(rows * ACTION),
-            log_probs: column(),
-            advantages: column(),
-            returns: column(),
-            values: column(),
-            mirrored: Vec::with_capacity(rows),
-        }
-    }
 }
 
 /// Shift and scale that give numbers mean 0 and deviation 1.

@@ -3,6 +3,7 @@
 use super::*;
 use crate::ACTION;
 use crate::robot::tests::simple;
+use rand::RngExt;
 
 fn config() -> LearningConfig {
     let mut config = LearningConfig::default();

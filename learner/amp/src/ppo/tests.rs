@@ -3,6 +3,7 @@
 use super::*;
 use crate::config::{PolicyConfig, RateSchedule};
 use crate::robot::tests::simple;
+use networks::Mlp;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;

@@ -1,0 +1,106 @@
+//! `[discriminator]`: the judge of style.
+
+use super::{Check, ConfigError};
+use serde::{Deserialize, Serialize};
+
+/// `[discriminator]`: the judge of style.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct DiscriminatorConfig {
+    /// Widths of hidden layers (ReLU). The recipe's; published trainers use 1024-512.
+    pub hidden: Vec<usize>,
+    /// Steps per iteration. The recipe's.
+    pub steps: usize,
+    /// Expert transitions per step, and as many of the policy. The recipe's.
+    pub batch: usize,
+    /// AdamW's rate. The recipe's.
+    pub learning_rate: f32,
+    /// Weight decay of hidden layers. The recipe's.
+    pub decay: f32,
+    /// Weight decay of the last layer. The recipe's.
+    pub head_decay: f32,
+    /// λ_GP of Eq. 6, on normalised observations. The recipe's; published least-squares trainers use 10.
+    pub gradient_penalty: f32,
+    /// Past policy transitions that are remembered.
+    pub replay_capacity: usize,
+    /// New transitions remembered per iteration: capacity and this make a memory of about 50 iterations.
+    pub replay_insert: usize,
+    /// Share of a step's policy transitions that is taken from memory. The recipe's half.
+    pub replay_share: f32,
+    /// Normalised features are clipped to ± this.
+    pub feature_clip: f32,
+    /// Least standard deviations of features: differences below them are not style.
+    pub floors: Floors,
+}
+
+/// `[discriminator.floors]`, each in its own unit. The recipe's: without that of joint velocities, exploration noise
+/// gives the policy away.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Floors {
+    /// m
+    pub height: f32,
+    /// m/s
+    pub linear_velocity: f32,
+    /// rad/s
+    pub angular_velocity: f32,
+    /// rad
+    pub joint_position: f32,
+    /// rad/s
+    pub joint_velocity: f32,
+}
+
+impl Default for DiscriminatorConfig {
+    fn default() -> Self {
+        Self {
+            hidden: vec![256, 128],
+            steps: 3,
+            batch: 1024,
+            learning_rate: 1e-4,
+            decay: 1e-3,
+            head_decay: 1e-2,
+            gradient_penalty: 20.0,
+            replay_capacity: 50_000,
+            replay_insert: 1024,
+            replay_share: 0.5,
+            feature_clip: 5.0,
+            floors: Floors::default(),
+        }
+    }
+}
+
+impl Default for Floors {
+    fn default() -> Self {
+        Self {
+            height: 0.03,
+            linear_velocity: 0.3,
+            angular_velocity: 0.5,
+            joint_position: 0.1,
+            joint_velocity: 2.0,
+        }
+    }
+}
+
+impl DiscriminatorConfig {
+    /// Refuses the first value that learning cannot work with.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        Check(Ok(()))
+            .layers("hidden", &self.hidden)
+            .count("steps", self.steps, 1000)
+            .count("batch", self.batch, 1 << 20)
+            .positive("learning_rate", self.learning_rate)
+            .not_negative("decay", self.decay)
+            .not_negative("head_decay", self.head_decay)
+            .not_negative("gradient_penalty", self.gradient_penalty)
+            .count("replay_capacity", self.replay_capacity, 10_000_000)
+            .count("replay_insert", self.replay_insert, self.replay_capacity)
+            .share("replay_share", self.replay_share)
+            .positive("feature_clip", self.feature_clip)
+            .positive("floors.height", self.floors.height)
+            .positive("floors.linear_velocity", self.floors.linear_velocity)
+            .positive("floors.angular_velocity", self.floors.angular_velocity)
+            .positive("floors.joint_position", self.floors.joint_position)
+            .positive("floors.joint_velocity", self.floors.joint_velocity)
+            .0
+    }
+}

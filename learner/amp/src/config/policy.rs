@@ -1,0 +1,126 @@
+//! `[policy]` and `[exploration]`: what acts, and how widely it tries.
+
+use super::{Check, ConfigError};
+use serde::{Deserialize, Serialize};
+
+/// `[policy]`: sizes of actor and critic, and what they see.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PolicyConfig {
+    /// Widths of the actor's hidden layers (ELU). The recipe's 256-128-64; published G1 trainers use 512-256-128.
+    pub hidden: Vec<usize>,
+    /// Widths of the critic's hidden layers (ELU). As the actor's.
+    pub critic_hidden: Vec<usize>,
+    /// Gain of the actor's first last layer: small, so that the first actions are near the default pose. The recipe's.
+    pub last_gain: f32,
+    /// Normalised observations are clipped to ± this. The recipe's.
+    pub observation_clip: f32,
+    /// Least standard deviation of an observation, in its own unit: what never varied must not be blown up later.
+    pub observation_floor: f32,
+}
+
+/// `[exploration]`: the standard deviation σ of actions around the policy's mean, in units of actions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ExplorationConfig {
+    /// `scheduled` follows the samples, `learned` is adapted by PPO from `initial_sigma` on.
+    pub kind: ExplorationKind,
+    /// Legs' σ at first: 0.6 is 0.15 rad. The recipe's; σ 0.15 from the start got stuck falling.
+    pub initial_sigma: f32,
+    /// Scheduled: legs' σ at the end. The recipe's.
+    pub final_sigma: f32,
+    /// Scheduled: samples until σ begins to shrink. The recipe's.
+    pub hold_samples: f64,
+    /// Scheduled: samples at which it has arrived, on a straight line of log σ. The recipe's.
+    pub final_samples: f64,
+    /// Waist's σ in parts of the legs'. Noise there is the discriminator's shortcut. The recipe's.
+    pub waist_factor: f32,
+    /// Arms' σ in parts of the legs'. The recipe's.
+    pub arm_factor: f32,
+    /// Learned: σ stays within `[min_sigma, max_sigma]`.
+    pub min_sigma: f32,
+    /// Learned: see `min_sigma`.
+    pub max_sigma: f32,
+}
+
+/// Choices of [`ExplorationConfig::kind`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ExplorationKind {
+    /// σ by the number of samples.
+    Scheduled,
+    /// σ as a parameter of the policy, the same in every state.
+    Learned,
+}
+
+impl Default for PolicyConfig {
+    fn default() -> Self {
+        Self {
+            hidden: vec![256, 128, 64],
+            critic_hidden: vec![256, 128, 64],
+            last_gain: 0.01,
+            observation_clip: 5.0,
+            observation_floor: 0.02,
+        }
+    }
+}
+
+impl Default for ExplorationConfig {
+    fn default() -> Self {
+        Self {
+            kind: ExplorationKind::Scheduled,
+            initial_sigma: 0.6,
+            final_sigma: 0.2,
+            hold_samples: 1.0e6,
+            final_samples: 3.0e6,
+            waist_factor: 0.3,
+            arm_factor: 0.3,
+            min_sigma: 0.05,
+            max_sigma: 1.0,
+        }
+    }
+}
+
+impl PolicyConfig {
+    /// Refuses the first value that learning cannot work with.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        Check(Ok(()))
+            .layers("hidden", &self.hidden)
+            .layers("critic_hidden", &self.critic_hidden)
+            .positive("last_gain", self.last_gain)
+            .positive("observation_clip", self.observation_clip)
+            .positive("observation_floor", self.observation_floor)
+            .0
+    }
+}
+
+impl ExplorationConfig {
+    /// Refuses the first value that learning cannot work with.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        Check(Ok(()))
+            .positive("initial_sigma", self.initial_sigma)
+            .positive("final_sigma", self.final_sigma)
+            .that(
+                self.hold_samples >= 0.0 && self.hold_samples.is_finite(),
+                "hold_samples",
+                self.hold_samples,
+                "use a finite number, 0 or above",
+            )
+            .that(
+                self.final_samples >= self.hold_samples && self.final_samples.is_finite(),
+                "final_samples",
+                self.final_samples,
+                "use hold_samples or more",
+            )
+            .positive("waist_factor", self.waist_factor)
+            .positive("arm_factor", self.arm_factor)
+            .positive("min_sigma", self.min_sigma)
+            .that(
+                self.max_sigma >= self.min_sigma && self.max_sigma.is_finite(),
+                "max_sigma",
+                self.max_sigma,
+                "use min_sigma or more",
+            )
+            .0
+    }
+}

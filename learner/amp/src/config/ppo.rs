@@ -1,0 +1,143 @@
+//! `[ppo]`: how the policy is improved.
+
+use super::{Check, ConfigError};
+use serde::{Deserialize, Serialize};
+
+/// `[ppo]`: how the policy is improved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PpoConfig {
+    /// γ, discount per 20 ms step. 0.99 in all published G1 trainers.
+    pub gamma: f32,
+    /// λ of the advantage estimate. 0.95 in all published G1 trainers.
+    pub lambda: f32,
+    /// Blended rewards are multiplied by it, so that values stay near 1. The recipe's.
+    pub reward_scale: f32,
+    /// Clip range of the probability ratio. 0.2 in most trainers.
+    pub clip: f32,
+    /// Clip range of the value's change, none if absent (the recipe's).
+    pub value_clip: Option<f32>,
+    /// Weight of the value loss beside the surrogate. 1 in most trainers; the networks share nothing but the norm.
+    pub value_coefficient: f32,
+    /// Weight of the entropy bonus; only `learned` exploration answers to it. The recipe's 0.
+    pub entropy_coefficient: f32,
+    /// Passes over the batch. The recipe's.
+    pub epochs: usize,
+    /// Rows per step. The recipe's.
+    pub minibatch: usize,
+    /// Adam's rate at first. The recipe's.
+    pub learning_rate: f32,
+    /// When the rate follows the KL divergence. Per minibatch it saw-toothed in the recipe's trials.
+    pub schedule: RateSchedule,
+    /// Mean KL divergence of the last epoch that the rate is steered to. The recipe's.
+    pub kl_target: f32,
+    /// The rate changes when KL leaves [target / band, target · band].
+    pub kl_band: f32,
+    /// Factor of one change. The recipe's.
+    pub rate_factor: f32,
+    /// Lowest rate. As in published trainers.
+    pub min_learning_rate: f32,
+    /// Highest rate. As in published trainers.
+    pub max_learning_rate: f32,
+    /// Global norm that gradients are shortened to. 1 in all published trainers.
+    pub gradient_norm: f32,
+    /// Over which rows advantages get mean 0 and deviation 1.
+    pub advantage_normalization: AdvantageNormalization,
+    /// Share of each minibatch that is replaced by its left–right mirror image. The recipe's half.
+    pub mirrored_share: f32,
+    /// Threads that rows are divided among. Sums are made in their order, so that results depend on this number and not
+    /// on the machine.
+    pub threads: usize,
+}
+
+/// Choices of [`PpoConfig::schedule`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RateSchedule {
+    /// The rate stays.
+    Fixed,
+    /// Once per iteration.
+    PerIteration,
+    /// Before every minibatch's step.
+    PerMinibatch,
+}
+
+/// Choices of [`PpoConfig::advantage_normalization`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AdvantageNormalization {
+    /// All rows of the iteration.
+    Batch,
+    /// The rows of each minibatch.
+    Minibatch,
+    /// Not at all.
+    None,
+}
+
+impl Default for PpoConfig {
+    fn default() -> Self {
+        Self {
+            gamma: 0.99,
+            lambda: 0.95,
+            reward_scale: 0.1,
+            clip: 0.2,
+            value_clip: None,
+            value_coefficient: 1.0,
+            entropy_coefficient: 0.0,
+            epochs: 4,
+            minibatch: 2048,
+            learning_rate: 3e-4,
+            schedule: RateSchedule::PerIteration,
+            kl_target: 0.025,
+            kl_band: 1.5,
+            rate_factor: 1.3,
+            min_learning_rate: 1e-5,
+            max_learning_rate: 1e-2,
+            gradient_norm: 1.0,
+            advantage_normalization: AdvantageNormalization::Batch,
+            mirrored_share: 0.5,
+            threads: 2,
+        }
+    }
+}
+
+impl PpoConfig {
+    /// Refuses the first value that learning cannot work with.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        Check(Ok(()))
+            .share("gamma", self.gamma)
+            .share("lambda", self.lambda)
+            .positive("reward_scale", self.reward_scale)
+            .positive("clip", self.clip)
+            .positive("value_clip", self.value_clip.unwrap_or(1.0))
+            .not_negative("value_coefficient", self.value_coefficient)
+            .not_negative("entropy_coefficient", self.entropy_coefficient)
+            .count("epochs", self.epochs, 1000)
+            .count("minibatch", self.minibatch, 1 << 24)
+            .positive("learning_rate", self.learning_rate)
+            .positive("kl_target", self.kl_target)
+            .that(
+                self.kl_band >= 1.0,
+                "kl_band",
+                self.kl_band,
+                "use 1 or more",
+            )
+            .that(
+                self.rate_factor > 1.0,
+                "rate_factor",
+                self.rate_factor,
+                "use more than 1, such as 1.3",
+            )
+            .positive("min_learning_rate", self.min_learning_rate)
+            .that(
+                self.max_learning_rate >= self.min_learning_rate,
+                "max_learning_rate",
+                self.max_learning_rate,
+                "use min_learning_rate or more",
+            )
+            .positive("gradient_norm", self.gradient_norm)
+            .share("mirrored_share", self.mirrored_share)
+            .count("threads", self.threads, 256)
+            .0
+    }
+}
