@@ -12,13 +12,12 @@ use clap::Args;
 use run::{FleetConfig, Folder};
 use rustix::process::{Pid, Signal, kill_process};
 use tokio::process::{Child, Command};
-use tokio::signal::unix::{SignalKind, signal};
 use tokio::time::{interval, timeout};
 
 use crate::child;
 use crate::failure::usage;
 use crate::place::Place;
-use crate::supervise::run_dir;
+use crate::supervise::{Stop, run_dir};
 
 /// How long the new actor may take to take its role.
 const JOINING: Duration = Duration::from_secs(30);
@@ -57,16 +56,12 @@ impl AddActor {
 
 /// Starts the actor and stays until it ends.
 async fn stay_with(folder: &Folder) -> Result<ExitStatus> {
-    let mut interrupt = signal(SignalKind::interrupt())?;
-    let mut terminate = signal(SignalKind::terminate())?;
-    let mut hangup = signal(SignalKind::hangup())?;
+    let mut stop = Stop::install()?;
     let mut process = join(folder).await?;
     loop {
         tokio::select! {
             status = process.wait() => return status.context("waiting for the actor"),
-            _ = interrupt.recv() => stop(&process),
-            _ = terminate.recv() => stop(&process),
-            _ = hangup.recv() => stop(&process),
+            () = stop.requested() => tell(&process),
         }
     }
 }
@@ -121,7 +116,8 @@ async fn turn(folder: &Folder) -> Result<run::Lock> {
     }
 }
 
-fn stop(process: &Child) {
+/// Tells it to end.
+fn tell(process: &Child) {
     if let Some(pid) = process.id().and_then(|id| Pid::from_raw(id.cast_signed())) {
         // It may have ended a moment ago.
         let _ = kill_process(pid, Signal::TERM);

@@ -11,7 +11,6 @@ use protocol::Domain;
 use run::metrics::Tail;
 use run::{FleetConfig, Folder, RunConfig};
 use rustix::process::{Pid, Signal, kill_process};
-use tokio::signal::unix::{Signal as Signals, SignalKind, signal};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::time::{MissedTickBehavior, interval};
 
@@ -19,14 +18,16 @@ use crate::child::{self, Child, Verdict, Words};
 use crate::console::Console;
 use crate::figures::{Outlook, Pace, clock, count};
 
+mod ending;
+mod stop;
+
+pub(crate) use stop::Stop;
+
 /// Between two looks at the children.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// Between two looks at the metrics.
 const GLANCE: Duration = Duration::from_millis(500);
-
-/// Actors that the learner has told to save and stop get this long before they are told again.
-const GRACE: Duration = Duration::from_secs(5);
 
 const LEARNER: &str = "learner";
 const SCHEDULER: &str = "scheduler";
@@ -71,32 +72,6 @@ pub(crate) fn supervise(launch: &Launch<'_>) -> Result<()> {
         let reason = group.watch(&mut stop).await;
         group.end(reason, &mut stop).await
     })
-}
-
-/// The signals that ask for the end. A closed terminal asks too.
-struct Stop {
-    interrupt: Signals,
-    terminate: Signals,
-    hangup: Signals,
-}
-
-impl Stop {
-    fn install() -> Result<Self> {
-        let install = |kind| signal(kind).context("installing the handlers of signals");
-        Ok(Self {
-            interrupt: install(SignalKind::interrupt())?,
-            terminate: install(SignalKind::terminate())?,
-            hangup: install(SignalKind::hangup())?,
-        })
-    }
-
-    async fn requested(&mut self) {
-        tokio::select! {
-            _ = self.interrupt.recv() => {}
-            _ = self.terminate.recv() => {}
-            _ = self.hangup.recv() => {}
-        }
-    }
 }
 
 struct Group<'a> {
@@ -207,90 +182,6 @@ impl<'a> Group<'a> {
         Ok(up.then_some(Reason::TimeUp))
     }
 
-    /// Ends everyone in order: the learner first, since it tells the actors to save.
-    async fn end(mut self, reason: Reason, stop: &mut Stop) -> Result<()> {
-        if !matches!(reason, Reason::Complete) {
-            self.console.say(match &reason {
-                Reason::TimeUp => "time is up: finishing the iteration",
-                Reason::Failed(_) => "ending the group",
-                _ => "ending: finishing the iteration (once more to kill at once)",
-            });
-        }
-        let patience = Duration::from_secs_f64(self.launch.run.deadlines.stop_seconds);
-        for child in &mut self.children {
-            child.retire();
-        }
-        self.signal(Signal::TERM, |role| role == LEARNER);
-        let saved = self
-            .until_ended(patience, stop, |role| role == LEARNER)
-            .await?;
-        if saved && !matches!(reason, Reason::Failed(_)) {
-            self.until_ended(GRACE.min(patience), stop, is_actor)
-                .await?;
-        }
-        self.signal(Signal::TERM, |role| role != LEARNER);
-        self.until_ended(patience, stop, |role| role != LEARNER)
-            .await?;
-        let killed = self.alive(|_| true);
-        self.signal(Signal::KILL, |_| true);
-        self.forced = false;
-        self.until_ended(GRACE, stop, |_| true).await?;
-
-        while let Ok(words) = self.words.try_recv() {
-            self.relay(&words);
-        }
-        self.glance()?;
-        self.show(Instant::now());
-        self.console.finish();
-        self.domain
-            .remove()
-            .context("removing the run's shared memory")?;
-        self.report(&reason, &killed);
-        match reason {
-            Reason::Failed(error) => Err(error),
-            _ => Ok(()),
-        }
-    }
-
-    /// Waits until nobody of those meant is alive; false when some are still after `patience`, or
-    /// when the end was asked for once more.
-    async fn until_ended(
-        &mut self,
-        patience: Duration,
-        stop: &mut Stop,
-        meant: impl Fn(&str) -> bool,
-    ) -> Result<bool> {
-        let until = Instant::now()
-            + if self.forced {
-                Duration::ZERO
-            } else {
-                patience
-            };
-        let mut looks = interval(LOOK);
-        loop {
-            tokio::select! {
-                () = stop.requested() => {
-                    self.forced = true;
-                    return Ok(self.alive(&meant).is_empty());
-                }
-                Some(words) = self.words.recv() => self.relay(&words),
-                _ = looks.tick() => {
-                    let now = Instant::now();
-                    for child in &mut self.children {
-                        child.died(now)?;
-                        child.retire();
-                    }
-                    if self.alive(&meant).is_empty() {
-                        return Ok(true);
-                    }
-                    if now >= until {
-                        return Ok(false);
-                    }
-                }
-            }
-        }
-    }
-
     /// The roles meant that are alive: our children, and actors that others have added.
     fn alive(&self, meant: impl Fn(&str) -> bool) -> Vec<String> {
         let ours = self.children.iter().filter(|child| child.is_running());
@@ -366,33 +257,6 @@ impl<'a> Group<'a> {
         } else {
             self.console.say(&format!("{role}: {}", line.trim_start()));
         }
-    }
-
-    fn report(&mut self, reason: &Reason, killed: &[String]) {
-        let what = match reason {
-            Reason::Complete => "complete",
-            Reason::TimeUp | Reason::Asked => "ended",
-            Reason::Failed(_) => "failed",
-        };
-        let run = self.launch.folder.name();
-        let mut report = format!("run {run} {what} after {}", clock(self.started.elapsed()));
-        if let Some(figures) = &self.pace.newest {
-            report += &format!(
-                " at iteration {}, {} samples",
-                figures.iteration, figures.samples
-            );
-        }
-        report += &match self.launch.folder.checkpoints().list().last() {
-            Some(iteration) => format!("; last checkpoint {iteration:08}"),
-            None => "; no checkpoint".to_owned(),
-        };
-        let left = self.alive(|_| true);
-        report += &match (left.as_slice(), killed) {
-            ([], []) => "; all processes ended, shared memory removed".to_owned(),
-            ([], killed) => format!("; killed: {}; shared memory removed", killed.join(", ")),
-            (left, _) => format!("; still alive: {}", left.join(", ")),
-        };
-        self.console.say(&report);
     }
 }
 

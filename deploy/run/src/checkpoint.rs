@@ -10,100 +10,15 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
-
 use crate::replace;
 
-/// The version of the layout below; raised when an older program could no longer read it.
-pub const FORMAT_VERSION: u32 = 1;
-const FORMAT: &str = "ampco-checkpoint";
-const MANIFEST: &str = "manifest.json";
+mod manifest;
+mod refusal;
 
-/// Why a checkpoint cannot be used or written.
-#[derive(Debug, thiserror::Error)]
-pub enum CheckpointError {
-    /// It was looked at and found wanting.
-    #[error("checkpoint {} is refused: {reason}; {}", path.display(), remedy(previous_good.as_deref()))]
-    Refused {
-        /// The checkpoint's folder.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: Refusal,
-        /// The newest older checkpoint of the run that is good.
-        previous_good: Option<PathBuf>,
-    },
-    /// The run has none.
-    #[error("there is no checkpoint in {}", .0.display())]
-    None(PathBuf),
-    /// The system refused, as with a full disk.
-    #[error("cannot use {}", path.display())]
-    Io {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system said.
-        #[source]
-        source: io::Error,
-    },
-}
+pub use manifest::FORMAT_VERSION;
+pub use refusal::{CheckpointError, Refusal};
 
-/// What is wrong with a checkpoint.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum Refusal {
-    /// No manifest, or the manifest of something else.
-    #[error("it is not a checkpoint of this program ({0})")]
-    Foreign(String),
-    /// Written by a later version of this program.
-    #[error("its format is version {found}, and this program reads up to {FORMAT_VERSION}")]
-    Newer {
-        /// The version found.
-        found: u32,
-    },
-    /// The manifest is not as it was written.
-    #[error("its manifest is corrupt")]
-    Manifest,
-    /// A part is not there.
-    #[error("part `{0}` is missing")]
-    Missing(String),
-    /// A part is shorter or longer than it was.
-    #[error("part `{part}` is truncated: {found} bytes of {expected}")]
-    Truncated {
-        /// The part.
-        part: String,
-        /// Bytes written.
-        expected: u64,
-        /// Bytes found.
-        found: u64,
-    },
-    /// A part's checksum differs.
-    #[error("part `{0}` is corrupt: its checksum differs")]
-    Corrupt(String),
-    /// It belongs to networks of another shape.
-    #[error("it is of shape `{found}`, and this run's is `{expected}`")]
-    Shape {
-        /// This run's shape.
-        expected: String,
-        /// The checkpoint's.
-        found: String,
-    },
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Manifest {
-    format: String,
-    version: u32,
-    iteration: u64,
-    shape: String,
-    parts: Vec<Part>,
-    /// CRC32 of this manifest written with a seal of 0.
-    seal: u32,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Part {
-    name: String,
-    length: u64,
-    crc: u32,
-}
+use manifest::{Manifest, Part, is_part_name};
 
 /// A checkpoint in memory, every part checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -136,16 +51,7 @@ impl Checkpoint {
         for part in &manifest.parts {
             let bytes =
                 fs::read(path.join(&part.name)).map_err(|_| Refusal::Missing(part.name.clone()))?;
-            if bytes.len() as u64 != part.length {
-                return Err(Refusal::Truncated {
-                    part: part.name.clone(),
-                    expected: part.length,
-                    found: bytes.len() as u64,
-                });
-            }
-            if crc32fast::hash(&bytes) != part.crc {
-                return Err(Refusal::Corrupt(part.name.clone()));
-            }
+            part.check(&bytes)?;
             parts.insert(part.name.clone(), bytes);
         }
         Ok(Self {
@@ -153,42 +59,6 @@ impl Checkpoint {
             shape: manifest.shape,
             parts,
         })
-    }
-}
-
-impl Manifest {
-    fn read(path: &Path) -> Result<Self, Refusal> {
-        let text = fs::read(path.join(MANIFEST))
-            .map_err(|_| Refusal::Foreign(format!("no {MANIFEST}")))?;
-        let any: serde_json::Value = serde_json::from_slice(&text)
-            .map_err(|_| Refusal::Foreign(format!("{MANIFEST} is not JSON")))?;
-        if any["format"] != FORMAT {
-            return Err(Refusal::Foreign(format!(
-                "{MANIFEST} says format {}",
-                any["format"]
-            )));
-        }
-        // The version comes first: a later manifest may have other fields.
-        let found = any["version"]
-            .as_u64()
-            .and_then(|version| u32::try_from(version).ok());
-        match found {
-            Some(found) if found > FORMAT_VERSION => return Err(Refusal::Newer { found }),
-            Some(_) => {}
-            None => return Err(Refusal::Manifest),
-        }
-        let manifest: Self = serde_json::from_value(any).map_err(|_| Refusal::Manifest)?;
-        let names_stay_inside = manifest.parts.iter().all(|part| is_part_name(&part.name));
-        if manifest.seal != manifest.computed_seal() || !names_stay_inside {
-            return Err(Refusal::Manifest);
-        }
-        Ok(manifest)
-    }
-
-    fn computed_seal(&self) -> u32 {
-        let mut unsealed = self.clone();
-        unsealed.seal = 0;
-        crc32fast::hash(&serde_json::to_vec(&unsealed).expect("a manifest is plain data"))
     }
 }
 
@@ -315,10 +185,7 @@ impl Checkpoints {
     pub fn attach(&self, iteration: u64, name: &str, bytes: &[u8]) -> Result<(), CheckpointError> {
         assert!(is_part_name(name), "{name:?} is not a plain file name");
         let path = self.path(iteration).join(name);
-        let mut framed = Vec::with_capacity(bytes.len() + 12);
-        framed.extend_from_slice(&(bytes.len() as u64).to_le_bytes());
-        framed.extend_from_slice(&crc32fast::hash(bytes).to_le_bytes());
-        framed.extend_from_slice(bytes);
+        let framed = [Part::of(name, bytes).frame().as_slice(), bytes].concat();
         replace::replace_file(&path, &framed).map_err(|source| CheckpointError::Io { path, source })
     }
 
@@ -363,64 +230,28 @@ fn write_draft(
 ) -> io::Result<()> {
     remove_folder(draft)?;
     fs::create_dir_all(draft)?;
-    let mut manifest = Manifest {
-        format: FORMAT.to_owned(),
-        version: FORMAT_VERSION,
-        iteration,
-        shape: shape.to_owned(),
-        parts: Vec::with_capacity(parts.len()),
-        seal: 0,
-    };
+    let mut written = Vec::with_capacity(parts.len());
     for (name, bytes) in parts {
         assert!(is_part_name(name), "{name:?} is not a plain file name");
         replace::write_durably(&draft.join(name), bytes)?;
-        manifest.parts.push(Part {
-            name: (*name).to_owned(),
-            length: bytes.len() as u64,
-            crc: crc32fast::hash(bytes),
-        });
+        written.push(Part::of(name, bytes));
     }
-    manifest.seal = manifest.computed_seal();
-    let text = serde_json::to_vec_pretty(&manifest)?;
-    replace::write_durably(&draft.join(MANIFEST), &text)?;
+    let text = serde_json::to_vec_pretty(&Manifest::new(iteration, shape, written))?;
+    replace::write_durably(&draft.join(manifest::FILE), &text)?;
     replace::sync_folder(draft)
 }
 
 fn unframe(name: &str, framed: &[u8]) -> Result<Vec<u8>, Refusal> {
-    let head = framed.split_first_chunk::<8>();
-    let frame = head.and_then(|(len, rest)| Some((len, rest.split_first_chunk::<4>()?)));
-    let Some((length, (crc, bytes))) = frame else {
+    let Some((frame, bytes)) = framed.split_first_chunk() else {
         return Err(Refusal::Corrupt(name.to_owned()));
     };
-    let expected = u64::from_le_bytes(*length);
-    if bytes.len() as u64 != expected {
-        return Err(Refusal::Truncated {
-            part: name.to_owned(),
-            expected,
-            found: bytes.len() as u64,
-        });
-    }
-    if crc32fast::hash(bytes) != u32::from_le_bytes(*crc) {
-        return Err(Refusal::Corrupt(name.to_owned()));
-    }
+    Part::unframe(name, frame).check(bytes)?;
     Ok(bytes.to_vec())
-}
-
-fn is_part_name(name: &str) -> bool {
-    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_');
-    !name.is_empty() && !name.starts_with('.') && name != MANIFEST && name.chars().all(plain)
 }
 
 fn remove_folder(path: &Path) -> io::Result<()> {
     match fs::remove_dir_all(path) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
         _ => Ok(()),
-    }
-}
-
-fn remedy(previous_good: Option<&Path>) -> String {
-    match previous_good {
-        Some(path) => format!("the newest good one before it is {}", path.display()),
-        None => "no earlier checkpoint is good".to_owned(),
     }
 }

@@ -1,0 +1,127 @@
+//! The end of a group: in order, within a time, with nothing left behind.
+
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result};
+use rustix::process::Signal;
+use tokio::time::interval;
+
+use super::stop::Stop;
+use super::{Group, LEARNER, LOOK, Reason, is_actor};
+use crate::figures::clock;
+
+/// Actors that the learner has told to save and stop get this long before they are told again.
+const GRACE: Duration = Duration::from_secs(5);
+
+impl Group<'_> {
+    /// Ends everyone in order: the learner first, since it tells the actors to save.
+    pub(super) async fn end(mut self, reason: Reason, stop: &mut Stop) -> Result<()> {
+        if !matches!(reason, Reason::Complete) {
+            self.console.say(match &reason {
+                Reason::TimeUp => "time is up: finishing the iteration",
+                Reason::Failed(_) => "ending the group",
+                _ => "ending: finishing the iteration (once more to kill at once)",
+            });
+        }
+        let patience = Duration::from_secs_f64(self.launch.run.deadlines.stop_seconds);
+        for child in &mut self.children {
+            child.retire();
+        }
+        self.signal(Signal::TERM, |role| role == LEARNER);
+        let saved = self
+            .until_ended(patience, stop, |role| role == LEARNER)
+            .await?;
+        if saved && !matches!(reason, Reason::Failed(_)) {
+            self.until_ended(GRACE.min(patience), stop, is_actor)
+                .await?;
+        }
+        self.signal(Signal::TERM, |role| role != LEARNER);
+        self.until_ended(patience, stop, |role| role != LEARNER)
+            .await?;
+        let killed = self.alive(|_| true);
+        self.signal(Signal::KILL, |_| true);
+        self.forced = false;
+        self.until_ended(GRACE, stop, |_| true).await?;
+
+        while let Ok(words) = self.words.try_recv() {
+            self.relay(&words);
+        }
+        self.glance()?;
+        self.show(Instant::now());
+        self.console.finish();
+        self.domain
+            .remove()
+            .context("removing the run's shared memory")?;
+        self.report(&reason, &killed);
+        match reason {
+            Reason::Failed(error) => Err(error),
+            _ => Ok(()),
+        }
+    }
+
+    /// Waits until nobody of those meant is alive; false when some are still after `patience`, or
+    /// when the end was asked for once more.
+    async fn until_ended(
+        &mut self,
+        patience: Duration,
+        stop: &mut Stop,
+        meant: impl Fn(&str) -> bool,
+    ) -> Result<bool> {
+        let until = Instant::now()
+            + if self.forced {
+                Duration::ZERO
+            } else {
+                patience
+            };
+        let mut looks = interval(LOOK);
+        loop {
+            tokio::select! {
+                () = stop.requested() => {
+                    self.forced = true;
+                    return Ok(self.alive(&meant).is_empty());
+                }
+                Some(words) = self.words.recv() => self.relay(&words),
+                _ = looks.tick() => {
+                    let now = Instant::now();
+                    for child in &mut self.children {
+                        child.died(now)?;
+                        child.retire();
+                    }
+                    if self.alive(&meant).is_empty() {
+                        return Ok(true);
+                    }
+                    if now >= until {
+                        return Ok(false);
+                    }
+                }
+            }
+        }
+    }
+
+    fn report(&mut self, reason: &Reason, killed: &[String]) {
+        let what = match reason {
+            Reason::Complete => "complete",
+            Reason::TimeUp | Reason::Asked => "ended",
+            Reason::Failed(_) => "failed",
+        };
+        let run = self.launch.folder.name();
+        let mut report = format!("run {run} {what} after {}", clock(self.started.elapsed()));
+        if let Some(figures) = &self.pace.newest {
+            report += &format!(
+                " at iteration {}, {} samples",
+                figures.iteration, figures.samples
+            );
+        }
+        report += &match self.launch.folder.checkpoints().list().last() {
+            Some(iteration) => format!("; last checkpoint {iteration:08}"),
+            None => "; no checkpoint".to_owned(),
+        };
+        let left = self.alive(|_| true);
+        report += &match (left.as_slice(), killed) {
+            ([], []) => "; all processes ended, shared memory removed".to_owned(),
+            ([], killed) => format!("; killed: {}; shared memory removed", killed.join(", ")),
+            (left, _) => format!("; still alive: {}", left.join(", ")),
+        };
+        self.console.say(&report);
+    }
+}

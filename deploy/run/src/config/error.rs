@@ -1,0 +1,90 @@
+//! What is said about a configuration that cannot be used: the place, the key, the value, the remedy.
+
+use std::path::PathBuf;
+
+/// Why a configuration cannot be used. Every message names the origin, the key and the remedy.
+#[derive(Debug, thiserror::Error)]
+pub enum ConfigError {
+    /// The file cannot be read.
+    #[error("cannot read {}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        #[source]
+        source: std::io::Error,
+    },
+    /// The file cannot be written.
+    #[error("cannot write {}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        #[source]
+        source: std::io::Error,
+    },
+    /// The text is not TOML.
+    #[error("{origin}: not valid TOML: {message}")]
+    Syntax {
+        /// The file or preset.
+        origin: String,
+        /// What the parser said, with line and column.
+        message: String,
+    },
+    /// `--set` was given something that is not `key=value`.
+    #[error("--set {given}: {problem}")]
+    Assignment {
+        /// The argument as given.
+        given: String,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// A section that nobody reads.
+    #[error("{origin}: unknown section [{section}]; {remedy}")]
+    UnknownSection {
+        /// Where it was given.
+        origin: String,
+        /// The section's name.
+        section: String,
+        /// The closest names.
+        remedy: String,
+    },
+    /// A key that nobody reads.
+    #[error("{origin}: unknown key `{key}` in [{section}] (value {value}); {remedy}")]
+    UnknownKey {
+        /// Where it was given.
+        origin: String,
+        /// The section.
+        section: String,
+        /// The key, dotted if nested.
+        key: String,
+        /// The value given to it.
+        value: String,
+        /// The closest names.
+        remedy: String,
+    },
+    /// A value of the wrong type or an unknown choice.
+    #[error("{origin}: `{key}` = {value} in [{section}]: {problem}")]
+    Value {
+        /// Where it was given.
+        origin: String,
+        /// The section.
+        section: String,
+        /// The key, dotted if nested.
+        key: String,
+        /// The value given to it.
+        value: String,
+        /// What was expected.
+        problem: String,
+    },
+    /// A value that its section's owner refuses: out of range, or at odds with another.
+    #[error("{origin}: [{section}] {problem}")]
+    Refused {
+        /// Where it was given.
+        origin: String,
+        /// The section.
+        section: String,
+        /// The owner's words: field, value, remedy.
+        problem: String,
+    },
+}
