@@ -20,7 +20,7 @@ step() {
 step format cargo fmt --all --check
 step lints cargo clippy --release --locked --workspace --all-targets -- -D warnings
 # The system tests spawn the programs, which `cargo test` alone would not build.
-step programs cargo build --release --locked -p cli -p scheduler -p learner -p actor
+step programs cargo build --release --locked --workspace
 step tests cargo test --release --locked --workspace
 # deny.toml is the one list; a test reads it too, so that the gate stands where cargo-deny is not installed.
 if command -v cargo-deny >/dev/null 2>&1; then

@@ -22,8 +22,7 @@ esac
 # In the repository's folder, because rustup looks for rust-toolchain.toml from there on.
 (
     cd -- "$root"
-    CARGO_TARGET_DIR=$target cargo build --quiet --release --locked \
-        -p cli -p scheduler -p learner -p actor
+    CARGO_TARGET_DIR=$target cargo build --quiet --release --locked --workspace
 )
 
 # exec: Ctrl-C and SIGTERM reach the supervisor itself, and its exit status is ours.

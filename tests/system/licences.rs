@@ -46,7 +46,9 @@ impl Lists {
 
 fn names(list: &toml::Value) -> BTreeSet<String> {
     let names = list.as_array().expect("an array").iter();
-    names.map(|name| name.as_str().expect("a name").to_owned()).collect()
+    names
+        .map(|name| name.as_str().expect("a name").to_owned())
+        .collect()
 }
 
 /// A package and what it says of its licence; nothing if it says nothing.

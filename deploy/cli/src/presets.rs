@@ -7,12 +7,46 @@ use run::Config;
 
 use crate::failure::usage;
 
-/// Name and text of each. They are part of the program, so it needs no folder beside it.
-const EMBEDDED: [(&str, &str); 3] = [
-    ("ampco", include_str!("../../presets/ampco.toml")),
-    ("amp-0.5", include_str!("../../presets/amp-0.5.toml")),
-    ("smoke", include_str!("../../presets/smoke.toml")),
+/// What all methods that are meant to walk begin from.
+const RECIPE: &str = include_str!("../../presets/recipe.toml");
+
+/// One of ours: part of the program, so it needs no folder beside it.
+struct Embedded {
+    name: &'static str,
+    text: &'static str,
+    /// Whether it lies on top of the recipe.
+    walks: bool,
+}
+
+const EMBEDDED: [Embedded; 3] = [
+    Embedded {
+        name: "ampco",
+        text: include_str!("../../presets/ampco.toml"),
+        walks: true,
+    },
+    Embedded {
+        name: "amp-0.5",
+        text: include_str!("../../presets/amp-0.5.toml"),
+        walks: true,
+    },
+    Embedded {
+        name: "smoke",
+        text: include_str!("../../presets/smoke.toml"),
+        walks: false,
+    },
 ];
+
+impl Embedded {
+    fn config(&self) -> Result<Config> {
+        let own = Config::parse(self.text, &format!("preset {}", self.name))?;
+        if !self.walks {
+            return Ok(own);
+        }
+        let mut config = Config::parse(RECIPE, "the recipe of the presets")?;
+        config.merge(own);
+        Ok(config)
+    }
+}
 
 /// A preset: what differs from the defaults.
 #[derive(Debug)]
@@ -26,15 +60,15 @@ pub(crate) struct Preset {
 
 /// The names, for help and errors.
 pub(crate) fn names() -> Vec<&'static str> {
-    EMBEDDED.iter().map(|(name, _)| *name).collect()
+    EMBEDDED.iter().map(|preset| preset.name).collect()
 }
 
 /// One of ours by its name, else a file.
 pub(crate) fn find(given: &str) -> Result<Preset> {
-    if let Some((name, text)) = EMBEDDED.iter().find(|(name, _)| *name == given) {
+    if let Some(preset) = EMBEDDED.iter().find(|preset| preset.name == given) {
         return Ok(Preset {
-            name: (*name).to_owned(),
-            config: Config::parse(text, &format!("preset {name}"))?,
+            name: preset.name.to_owned(),
+            config: preset.config()?,
             folder: None,
         });
     }

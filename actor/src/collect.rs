@@ -1,0 +1,67 @@
+//! Fills one rollout in place: the policy acts, the fleet steps, every number goes straight into
+//! the memory that the learner will read.
+
+use std::time::Instant;
+
+use policy::Policy;
+use protocol::RolloutViewMut;
+use rand_pcg::Pcg64Mcg;
+use sim::{Fleet, StepOut};
+
+/// Seconds that a rollout took, by what they were spent on.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Timing {
+    /// Stepping the robots: physics, task, observation.
+    pub physics: f32,
+    /// Running the policy and drawing its noise.
+    pub inference: f32,
+}
+
+/// Lets `policy` act in `fleet` for as many steps as `rollout` has room for.
+///
+/// Allocates nothing. `rollout` may hold old numbers: every block is written, the time-out block
+/// with zeros where no episode timed out.
+pub fn collect(
+    fleet: &mut Fleet,
+    policy: &mut Policy,
+    generator: &mut Pcg64Mcg,
+    rollout: &mut RolloutViewMut<'_>,
+) -> Timing {
+    let layout = rollout.layout;
+    let mut timing = Timing::default();
+    rollout.timeout_observations.fill(0.0);
+    for t in 0..layout.steps {
+        let step = rollout.step(t);
+        let started = Instant::now();
+        step.observations.copy_from_slice(fleet.observations());
+        step.features.copy_from_slice(fleet.features());
+        policy.sample(
+            step.observations,
+            layout.environments,
+            generator,
+            step.actions,
+            step.means,
+            step.log_probs,
+        );
+        let acted = Instant::now();
+        fleet.step(
+            step.actions,
+            &mut StepOut {
+                task_rewards: step.task_rewards,
+                energies: step.energies,
+                tracking_errors: step.tracking_errors,
+                ends: step.ends,
+                episode_steps: step.episode_steps,
+                next_features: step.next_features,
+                foot_forces: step.foot_forces,
+                timeout_observations: step.timeout_observations,
+            },
+        );
+        timing.inference += (acted - started).as_secs_f32();
+        timing.physics += acted.elapsed().as_secs_f32();
+    }
+    rollout
+        .last_observations
+        .copy_from_slice(fleet.observations());
+    timing
+}

@@ -1,0 +1,51 @@
+//! What an actor reads of the run's configuration: the task and the clips that robots start from.
+
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+use motion::{Dataset, MotionConfig};
+use protocol::RolloutLayout;
+use run::{FleetConfig, Folder, RunConfig};
+use sim::{RandomizationConfig, Starts, TaskConfig};
+
+/// The sections that an actor needs, read and checked.
+pub struct ActorConfig {
+    /// Seed of the whole run.
+    pub seed: u64,
+    /// Size of this actor's rollouts.
+    pub layout: RolloutLayout,
+    /// Commands, rewards, ends of episodes.
+    pub task: TaskConfig,
+    /// Table I.
+    pub randomization: RandomizationConfig,
+    /// Frames for reference-state initialisation.
+    pub starts: Starts,
+    /// How long a send may wait for a busy learner.
+    pub send_patience: Duration,
+}
+
+impl ActorConfig {
+    /// Reads the run's configuration and generates or loads its clips.
+    pub fn read(folder: &Folder) -> Result<Self> {
+        let config = folder.config()?;
+        let run: RunConfig = config.checked("run", RunConfig::validate)?;
+        let fleet: FleetConfig = config.checked("fleet", FleetConfig::validate)?;
+        let motion: MotionConfig = config.section("motion")?;
+        let dataset =
+            Dataset::load(&motion, folder.path()).context("loading the reference motion")?;
+        Ok(Self {
+            seed: run.seed,
+            layout: RolloutLayout {
+                environments: fleet.environments_per_actor(),
+                steps: fleet.steps,
+            },
+            task: config.checked("task", TaskConfig::validate)?,
+            randomization: config.checked("randomization", RandomizationConfig::validate)?,
+            starts: dataset
+                .frames()
+                .map(|(state, command, weight)| (*state, command, weight))
+                .collect(),
+            send_patience: Duration::from_secs_f64(run.deadlines.send_seconds),
+        })
+    }
+}

@@ -1,0 +1,134 @@
+//! The actor's loop: newest weights, one rollout, send.
+
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+use protocol::{
+    Domain, Node, RolloutHeader, RolloutPublisher, SendOutcome, Shutdown, TICK, WeightsHeader,
+    WeightsOrder, WeightsSubscriber,
+};
+use run::Folder;
+use tracing::{info, warn};
+
+use crate::config::ActorConfig;
+use crate::worker::Worker;
+
+/// Runs actor `index` of the run in `run_dir` until it is told to stop.
+pub fn run(run_dir: &Path, index: u32) -> Result<()> {
+    protocol::end_with_supervisor()?;
+    let folder = Folder::open(run_dir)?;
+    let role = format!("actor-{index}");
+    run::log::init(&folder.logs(), &role)?;
+    let _held = folder.lock(&role)?;
+    let config = ActorConfig::read(&folder)?;
+    let shutdown = Shutdown::on_signals()?;
+    let node = Node::join(&Domain::for_run(folder.path())?, &role, &shutdown)?;
+    let weights = WeightsSubscriber::new(&node).context("opening the weights stream")?;
+    let mut rollouts = RolloutPublisher::new(&node, index, config.layout, config.send_patience)
+        .context("opening the rollout stream")?;
+    info!(
+        environments = config.layout.environments,
+        steps = config.layout.steps,
+        "ready"
+    );
+
+    let checkpoints = folder.checkpoints();
+    let mut worker: Option<Worker> = None;
+    let mut acting: Option<WeightsHeader> = None;
+    let mut delivered = true;
+    let mut faults = 0;
+    loop {
+        let idle = Instant::now();
+        // In lock-step a version is answered once. Overlapped, the same weights may act again, but
+        // not for a learner that is gone.
+        let must_be_new = acting.is_none_or(|header| header.is_lockstep()) || !delivered;
+        loop {
+            if shutdown.requested() {
+                return Ok(());
+            }
+            if let Some(newest) = weights.newest()? {
+                let header = *newest.header();
+                if header.layout() != config.layout {
+                    bail!(
+                        "the learner wants rollouts of {:?}, this run's configuration says {:?}; \
+                         restart the group so that all processes read the same config.toml",
+                        header.layout(),
+                        config.layout
+                    );
+                }
+                if !obey(&header, index, &config, &mut worker, &checkpoints)? {
+                    info!(version = header.version, "told to stop");
+                    return Ok(());
+                }
+                let worker = worker.as_mut().context("weights came without an order")?;
+                worker.adopt(&header, newest.flat())?;
+                acting = Some(header);
+                break;
+            }
+            if !must_be_new {
+                break;
+            }
+            weights.wait(TICK)?;
+        }
+        let (Some(worker), Some(header)) = (worker.as_mut(), acting) else {
+            continue;
+        };
+        let waited = idle.elapsed() + rollouts.waited();
+        let mut loan = rollouts.loan()?;
+        let started = Instant::now();
+        let timing = worker.collect(&mut loan.view_mut());
+        let sent = rollouts.send(
+            loan,
+            RolloutHeader {
+                learner: header.learner,
+                policy_version: header.version,
+                physics_seconds: timing.physics,
+                inference_seconds: timing.inference,
+                waiting_seconds: waited.as_secs_f32(),
+                collect_seconds: started.elapsed().as_secs_f32(),
+                ..RolloutHeader::default()
+            },
+        )?;
+        delivered = sent == SendOutcome::Delivered;
+        if worker.faults() > faults {
+            faults = worker.faults();
+            warn!(
+                faults,
+                "environments were reset after numbers that are not finite"
+            );
+        }
+    }
+}
+
+/// Does what the order says before collecting. False: stop.
+fn obey(
+    header: &WeightsHeader,
+    index: u32,
+    config: &ActorConfig,
+    worker: &mut Option<Worker>,
+    checkpoints: &run::Checkpoints,
+) -> Result<bool> {
+    let Some(order) = header.order() else {
+        bail!(
+            "the learner gave order {}, which this actor does not know; use programs of one build",
+            header.order
+        );
+    };
+    let version = header.version;
+    match worker {
+        // A snapshot that a life before this one wrote for the same order is kept, not replaced.
+        None if order == WeightsOrder::SaveThenStop => return Ok(false),
+        None => *worker = Some(Worker::begin(config, index, header, checkpoints)?),
+        Some(worker) => match order {
+            WeightsOrder::Collect => {}
+            WeightsOrder::SaveThenCollect => worker.save(index, version, checkpoints),
+            WeightsOrder::RestoreThenCollect => worker.restore(index, version, checkpoints),
+            WeightsOrder::SaveThenStop => {
+                worker.save(index, version, checkpoints);
+                return Ok(false);
+            }
+        },
+    }
+    Ok(true)
+}

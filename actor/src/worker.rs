@@ -1,0 +1,178 @@
+//! What an actor works with: its fleet, its policy, its noise, and how they are saved and restored.
+//!
+//! A worker is born with the first weights it receives, because they say how it begins: anew, or
+//! where a checkpoint left it.
+
+use anyhow::{Context, Result};
+use policy::{Policy, Shape};
+use protocol::{RolloutViewMut, WeightsHeader, WeightsOrder};
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+use run::Checkpoints;
+use serde::{Deserialize, Serialize};
+use sim::Fleet;
+use tracing::{info, warn};
+
+use crate::collect::{Timing, collect};
+use crate::config::ActorConfig;
+
+/// The living half of an actor.
+pub(crate) struct Worker {
+    fleet: Fleet,
+    policy: Policy,
+    generator: Pcg64Mcg,
+}
+
+/// A worker on the disk: all that its future depends on beside the weights.
+#[derive(Serialize, Deserialize)]
+struct Snapshot {
+    fleet: Vec<u8>,
+    generator: Pcg64Mcg,
+}
+
+impl Worker {
+    /// Begins with the weights of `header`: where their checkpoint left this actor if it has a
+    /// snapshot of it, else anew.
+    ///
+    /// A worker that begins anew is seeded by run, actor and version: an actor that comes back in
+    /// the middle of a run does not live its first episodes again.
+    pub(crate) fn begin(
+        config: &ActorConfig,
+        index: u32,
+        header: &WeightsHeader,
+        checkpoints: &Checkpoints,
+    ) -> Result<Self> {
+        let seed = mix(mix(config.seed, u64::from(index) + 1), header.version);
+        let fleet = Fleet::new(
+            &config.task,
+            &config.randomization,
+            config.starts.clone(),
+            config.layout.environments,
+            seed,
+        )
+        .context("setting up the fleet")?;
+        let shape = Shape {
+            hidden: hidden(header),
+        };
+        let mut worker = Self {
+            fleet,
+            policy: Policy::new(shape),
+            generator: Pcg64Mcg::seed_from_u64(mix(seed, 0)),
+        };
+        if header.order() != Some(WeightsOrder::Collect) {
+            worker.restore(index, header.version, checkpoints);
+        }
+        Ok(worker)
+    }
+
+    /// Takes the state that this actor had at checkpoint `version`; what cannot be read is left,
+    /// and said: a checkpoint without an actor's fleet is still a good checkpoint.
+    pub(crate) fn restore(&mut self, index: u32, version: u64, checkpoints: &Checkpoints) {
+        let bytes = match checkpoints.attachment(version, &name(index)) {
+            Ok(Some(bytes)) => bytes,
+            Ok(None) => {
+                info!(
+                    version,
+                    "no snapshot of this actor; its episodes begin anew"
+                );
+                return;
+            }
+            Err(error) => {
+                warn!(version, %error, "snapshot of this actor refused; its episodes begin anew");
+                return;
+            }
+        };
+        match self.decode(&bytes) {
+            Ok(()) => info!(version, "fleet restored"),
+            Err(error) => {
+                warn!(
+                    version,
+                    error = format!("{error:#}"),
+                    "snapshot of this actor refused; its episodes begin anew"
+                );
+            }
+        }
+    }
+
+    fn decode(&mut self, bytes: &[u8]) -> Result<()> {
+        let (snapshot, _): (Snapshot, usize) =
+            bincode::serde::decode_from_slice(bytes, bincode::config::standard())
+                .context("reading the snapshot")?;
+        self.fleet.restore(&snapshot.fleet)?;
+        self.generator = snapshot.generator;
+        Ok(())
+    }
+
+    /// Writes this actor's state beside the parts of checkpoint `version`. A disk that refuses
+    /// costs the snapshot, not the run.
+    pub(crate) fn save(&self, index: u32, version: u64, checkpoints: &Checkpoints) {
+        let snapshot = Snapshot {
+            fleet: self.fleet.save(),
+            generator: self.generator.clone(),
+        };
+        let bytes = bincode::serde::encode_to_vec(&snapshot, bincode::config::standard())
+            .expect("a snapshot can be written to memory");
+        if let Err(error) = checkpoints.attach(version, &name(index), &bytes) {
+            warn!(version, %error, "snapshot of this actor not written");
+        }
+    }
+
+    /// Takes over new weights; another shape is another policy.
+    pub(crate) fn adopt(&mut self, header: &WeightsHeader, flat: &[f32]) -> Result<()> {
+        let hidden = hidden(header);
+        if self.policy.shape().hidden != hidden {
+            self.policy = Policy::new(Shape { hidden });
+        }
+        self.policy
+            .load(flat)
+            .with_context(|| format!("loading policy version {}", header.version))
+    }
+
+    /// Fills one rollout.
+    pub(crate) fn collect(&mut self, rollout: &mut RolloutViewMut<'_>) -> Timing {
+        collect(
+            &mut self.fleet,
+            &mut self.policy,
+            &mut self.generator,
+            rollout,
+        )
+    }
+
+    /// Steps thrown away because something was not finite.
+    pub(crate) fn faults(&self) -> u64 {
+        self.fleet.faults()
+    }
+}
+
+fn hidden(header: &WeightsHeader) -> Vec<usize> {
+    header
+        .hidden()
+        .iter()
+        .map(|&width| width as usize)
+        .collect()
+}
+
+fn name(index: u32) -> String {
+    format!("actor-{index}.bin")
+}
+
+/// One well-mixed number of two (SplitMix64's finaliser), so that neighbours share no stream.
+fn mix(seed: u64, salt: u64) -> u64 {
+    let mut x = seed ^ salt.wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    x ^ (x >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbouring_actors_and_versions_get_seeds_of_their_own() {
+        let seeds: std::collections::BTreeSet<u64> = (0..8)
+            .flat_map(|actor| (0..8).map(move |version| mix(mix(7, actor + 1), version)))
+            .collect();
+        assert_eq!(seeds.len(), 64);
+    }
+}

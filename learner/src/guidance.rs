@@ -1,0 +1,147 @@
+//! The scheduler's word, and what holds while it is silent.
+//!
+//! In lock-step the rule of iteration n + 1 is the answer to report n, whoever is faster, so the
+//! learner waits for it; a scheduler that is away is waited for once, and the last word stays.
+
+use std::time::Duration;
+
+use ampco::{Granularity, Rule};
+use anyhow::{Context, Result};
+use protocol::{Answer, Directive, DirectiveSubscriber};
+use serde::{Deserialize, Serialize};
+use tracing::{info, warn};
+
+/// How the next batch is paid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Guide {
+    pub(crate) rule: Rule,
+    pub(crate) granularity: Granularity,
+    /// The directive it comes from; `None` before the first.
+    pub(crate) directive: Option<Directive>,
+}
+
+/// What is kept of a guide in a checkpoint.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Remembered {
+    rule: u32,
+    first: f32,
+    second: f32,
+    granularity: u32,
+}
+
+/// Follows the scheduler.
+pub(crate) struct Guidance {
+    directives: DirectiveSubscriber,
+    learner: u64,
+    /// How long an answer is waited for; zero where none is.
+    patience: Duration,
+    away: bool,
+    guide: Guide,
+}
+
+impl Guidance {
+    /// Begins with the rule that holds before any report.
+    pub(crate) fn new(
+        directives: DirectiveSubscriber,
+        learner: u64,
+        patience: Duration,
+        rule: Rule,
+        granularity: Granularity,
+    ) -> Self {
+        Self {
+            directives,
+            learner,
+            patience,
+            away: false,
+            guide: Guide {
+                rule,
+                granularity,
+                directive: None,
+            },
+        }
+    }
+
+    /// The guide for the iteration after `iteration`, of which a report was sent (or none, at 0).
+    pub(crate) fn after(&mut self, iteration: u64) -> Result<Guide> {
+        if iteration == 0 {
+            return Ok(self.guide);
+        }
+        // Once away, it is not waited for again until it has spoken.
+        let patience = if self.away {
+            Duration::ZERO
+        } else {
+            self.patience
+        };
+        match self
+            .directives
+            .wait_for(self.learner, iteration, patience)?
+        {
+            Answer::Came(directive) => {
+                if self.away {
+                    info!(iteration, "the scheduler is back");
+                }
+                self.away = false;
+                self.follow(directive)?;
+            }
+            Answer::Late | Answer::Shutdown => {
+                if !self.away && !self.patience.is_zero() {
+                    warn!(
+                        iteration,
+                        "the scheduler does not answer; its last directive stays in force"
+                    );
+                    self.away = true;
+                }
+                if let Some(newest) = self.directives.newest()?
+                    && newest.answers(self.learner, 0)
+                {
+                    self.follow(newest)?;
+                }
+            }
+        }
+        Ok(self.guide)
+    }
+
+    /// Whether the scheduler failed to answer when it was last waited for.
+    pub(crate) fn is_away(&self) -> bool {
+        self.away
+    }
+
+    pub(crate) fn remember(&self) -> Option<Remembered> {
+        self.guide.directive.map(|directive| Remembered {
+            rule: directive.rule,
+            first: directive.first,
+            second: directive.second,
+            granularity: directive.granularity,
+        })
+    }
+
+    /// Takes up what a checkpoint remembers, until the scheduler speaks.
+    pub(crate) fn recall(&mut self, remembered: Remembered) -> Result<()> {
+        let directive = Directive {
+            rule: remembered.rule,
+            first: remembered.first,
+            second: remembered.second,
+            granularity: remembered.granularity,
+            ..Directive::default()
+        };
+        self.guide.rule = directive.rule()?;
+        self.guide.granularity = directive.granularity()?;
+        Ok(())
+    }
+
+    fn follow(&mut self, directive: Directive) -> Result<()> {
+        let before = self.guide.directive.map_or(1, |directive| directive.phase);
+        if directive.phase != before {
+            let (lower, upper) = directive.bounds().unzip();
+            info!(phase = directive.phase, switched_at = ?directive.switched_at(), ?lower, ?upper, "phase");
+        }
+        self.guide = Guide {
+            rule: directive.rule().context("a directive of the scheduler")?,
+            granularity: directive
+                .granularity()
+                .context("a directive of the scheduler")?,
+            directive: Some(directive),
+        };
+        Ok(())
+    }
+}

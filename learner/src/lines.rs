@@ -1,0 +1,97 @@
+//! The learner's lines to the outside: streams, metrics, checkpoints.
+
+use std::time::Duration;
+
+use ampco::Schedule;
+use anyhow::{Context, Result};
+use protocol::{
+    DirectiveSubscriber, Domain, Node, RewardPublisher, RolloutSubscriber, Shutdown, WeightsHeader,
+    WeightsOrder, WeightsPublisher,
+};
+use run::{Folder, Metrics};
+
+use crate::config::LearnerConfig;
+use crate::guidance::Guidance;
+use crate::intake::Intake;
+use crate::state::State;
+
+pub(crate) struct Lines {
+    pub(crate) intake: Intake,
+    pub(crate) guidance: Guidance,
+    pub(crate) metrics: Metrics,
+    rewards: RewardPublisher,
+    weights: WeightsPublisher,
+}
+
+impl Lines {
+    /// Opens all of them for a learner in `state`.
+    pub(crate) fn open(folder: &Folder, config: &LearnerConfig, state: &mut State) -> Result<Self> {
+        // Waiting must not end early when a stop is asked for: an iteration that has begun is
+        // finished first. The loop looks at the real request.
+        let node = Node::join(
+            &Domain::for_run(folder.path())?,
+            "learner",
+            &Shutdown::manual(),
+        )?;
+        let schedule = Schedule::new(config.schedule.clone()).context("section [scheduler]")?;
+        let terms = config.terms();
+        let rollouts = RolloutSubscriber::new(&node).context("opening the rollout stream")?;
+        let directives = DirectiveSubscriber::new(&node).context("opening the directive stream")?;
+        let patience = if terms.lockstep {
+            Duration::from_secs_f64(config.run.deadlines.directive_seconds)
+        } else {
+            Duration::ZERO
+        };
+        let mut guidance = Guidance::new(
+            directives,
+            node.incarnation(),
+            patience,
+            schedule.rule(),
+            schedule.granularity(),
+        );
+        if let Some(remembered) = state.remembered {
+            guidance.recall(remembered)?;
+        }
+        let mut lines = Self {
+            intake: Intake::new(rollouts, node.incarnation(), config.fleet.actors, terms),
+            guidance,
+            metrics: Metrics::open(&folder.metrics_path())?,
+            rewards: RewardPublisher::new(&node).context("opening the reward stream")?,
+            weights: WeightsPublisher::new(&node, state.learning.policy_flat().len())
+                .context("opening the weights stream")?,
+        };
+        if let Some(report) = state.last_report {
+            // The scheduler answers it from the log; what it knew of later iterations is void.
+            lines.rewards.send(report.message())?;
+        }
+        Ok(lines)
+    }
+
+    /// Tells the scheduler how iteration `state.iteration` was paid.
+    pub(crate) fn report(&mut self, state: &State) -> Result<()> {
+        if let Some(report) = state.last_report {
+            self.rewards.send(report.message())?;
+        }
+        Ok(())
+    }
+
+    /// Gives the actors the newest policy, and something to do with it.
+    pub(crate) fn broadcast(
+        &mut self,
+        state: &mut State,
+        config: &LearnerConfig,
+        order: WeightsOrder,
+    ) -> Result<()> {
+        let terms = config.terms();
+        let header = WeightsHeader::new(
+            state.iteration,
+            order,
+            &config.learning.policy.hidden,
+            terms.layout,
+            terms.lockstep,
+        );
+        self.weights
+            .broadcast(header, state.learning.policy_flat())
+            .with_context(|| format!("broadcasting policy version {}", state.iteration))
+    }
+}

@@ -1,0 +1,204 @@
+//! The learner's loop: gather, learn, log, report, save, broadcast.
+
+use std::path::Path;
+use std::time::Instant;
+
+use amp::{Batch, IterationReport, LearningError};
+use anyhow::{Context, Result};
+use protocol::{Shutdown, WeightsOrder};
+use run::Folder;
+use tracing::{error, info, warn};
+
+use crate::config::LearnerConfig;
+use crate::gait;
+use crate::guidance::Guide;
+use crate::intake::Gathered;
+use crate::lines::Lines;
+use crate::record::{self, DecisionFigures, Record, Refused, Timing, Traffic};
+use crate::state::State;
+
+/// Updates refused in a row after which something is broken for good.
+const MOST_REFUSALS: u64 = 5;
+
+/// Learns for the run in `run_dir` until its iterations are done or it is told to stop.
+pub fn run(run_dir: &Path, resume: bool) -> Result<()> {
+    protocol::end_with_supervisor()?;
+    let folder = Folder::open(run_dir)?;
+    run::log::init(&folder.logs(), "learner")?;
+    let _held = folder.lock("learner")?;
+    let config = LearnerConfig::read(&folder)?;
+    let shutdown = Shutdown::on_signals()?;
+    let mut state = State::begin(&folder, &config, resume)?;
+    let mut lines = Lines::open(&folder, &config, &mut state)?;
+    let mut learner = Loop {
+        started: Instant::now(),
+        refusals: 0,
+        folder,
+        config,
+    };
+    let mut batch = Batch::default();
+    info!(iteration = state.iteration, resume, "learning");
+
+    let mut order = if resume {
+        WeightsOrder::RestoreThenCollect
+    } else {
+        WeightsOrder::Collect
+    };
+    while !shutdown.requested() && !learner.is_complete(&state) {
+        lines.broadcast(&mut state, &learner.config, order)?;
+        let began = Instant::now();
+        let Some(gathered) = lines
+            .intake
+            .gather(state.iteration, &mut batch, &shutdown)?
+        else {
+            break;
+        };
+        let gather_seconds = began.elapsed().as_secs_f64();
+        let guide = lines.guidance.after(state.reported())?;
+        state.remembered = lines.guidance.remember();
+        let learned = state.learn(&batch, &learner.config, &guide);
+        let span = Span {
+            began,
+            gather_seconds,
+            gathered,
+        };
+        learner.tell(&mut lines, &state, &batch, &guide, &learned, &span)?;
+        if learner.is_hopeless() {
+            learner.save(&mut state);
+            return Err(learned.expect_err("refused")).context(format!(
+                "{MOST_REFUSALS} updates in a row were refused; the last good weights are in {}",
+                learner.folder.checkpoints().path(state.iteration).display()
+            ));
+        }
+        order = WeightsOrder::Collect;
+        if state
+            .iteration
+            .is_multiple_of(learner.config.run.checkpoint_every)
+            && learner.save(&mut state)
+        {
+            order = WeightsOrder::SaveThenCollect;
+        }
+    }
+    lines.metrics.sync()?;
+    learner.save(&mut state);
+    lines.broadcast(&mut state, &learner.config, WeightsOrder::SaveThenStop)?;
+    info!(iteration = state.iteration, "done");
+    Ok(())
+}
+
+/// What stays the same while the loop turns.
+struct Loop {
+    folder: Folder,
+    config: LearnerConfig,
+    started: Instant,
+    refusals: u64,
+}
+
+/// One turn of the loop, from its broadcast on.
+struct Span {
+    began: Instant,
+    gather_seconds: f64,
+    gathered: Gathered,
+}
+
+impl Loop {
+    fn is_complete(&self, state: &State) -> bool {
+        let limit = self.config.run.iterations;
+        limit > 0 && state.iteration >= limit
+    }
+
+    fn is_hopeless(&self) -> bool {
+        self.refusals >= MOST_REFUSALS
+    }
+
+    fn seconds(&self, state: &State) -> f64 {
+        state.seconds_before + self.started.elapsed().as_secs_f64()
+    }
+
+    /// Writes a checkpoint; a disk that refuses stops the writing, not the training.
+    fn save(&self, state: &mut State) -> bool {
+        let seconds = self.seconds(state);
+        match state.save(&self.folder, &self.config, seconds) {
+            Ok(()) => true,
+            Err(problem) => {
+                let problem = anyhow::Error::from(problem);
+                warn!(
+                    iteration = state.iteration,
+                    problem = format!("{problem:#}"),
+                    "checkpoint not written; training goes on"
+                );
+                false
+            }
+        }
+    }
+
+    /// One line for the log, one report for the scheduler.
+    fn tell(
+        &mut self,
+        lines: &mut Lines,
+        state: &State,
+        batch: &Batch,
+        guide: &Guide,
+        learned: &Result<IterationReport, LearningError>,
+        span: &Span,
+    ) -> Result<()> {
+        match learned {
+            Ok(report) => {
+                self.refusals = 0;
+                lines
+                    .metrics
+                    .append(&self.record(lines, state, batch, guide, report, span))?;
+                lines.report(state)
+            }
+            Err(problem) => {
+                self.refusals += 1;
+                error!(iteration = state.iteration, %problem, "update refused; the last good weights stay");
+                lines.metrics.append(&Refused {
+                    iteration: state.iteration,
+                    samples: state.samples,
+                    fault: problem.to_string(),
+                })?;
+                Ok(())
+            }
+        }
+    }
+
+    fn record(
+        &self,
+        lines: &Lines,
+        state: &State,
+        batch: &Batch,
+        guide: &Guide,
+        report: &IterationReport,
+        span: &Span,
+    ) -> Record {
+        let iteration_seconds = span.began.elapsed().as_secs_f64();
+        let gathered = &span.gathered;
+        Record {
+            iteration: state.iteration,
+            samples: state.samples,
+            phase: guide.directive.map_or(1, |directive| directive.phase),
+            task_weight: 1.0 - report.style_weight,
+            learning: record::figures(report),
+            decision: DecisionFigures::of(guide, lines.guidance.is_away()),
+            gait: gait::of(batch).into(),
+            traffic: Traffic::of(
+                gathered,
+                lines.intake.ledger().totals(),
+                lines.intake.surplus(),
+            ),
+            timing: Timing {
+                seconds: self.seconds(state),
+                iteration_seconds,
+                samples_per_second: batch.rows() as f64 / iteration_seconds,
+                gather_seconds: span.gather_seconds,
+                learn_seconds: iteration_seconds - span.gather_seconds,
+                learning: report.seconds,
+                collect_seconds: gathered.collect_seconds,
+                physics_seconds: gathered.physics_seconds,
+                inference_seconds: gathered.inference_seconds,
+                waiting_seconds: gathered.waiting_seconds,
+            },
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! A line of `metrics.jsonl`: what one iteration was like.
+//!
+//! Everything outside `timing` depends on the seed and the actors alone, so two runs can be
+//! compared line by line.
+
+use amp::{IterationReport, Seconds};
+use g1::gait::Gait;
+use protocol::Totals;
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use crate::guidance::Guide;
+use crate::intake::Gathered;
+
+/// One iteration.
+#[derive(Serialize)]
+pub(crate) struct Record {
+    pub(crate) iteration: u64,
+    pub(crate) samples: u64,
+    pub(crate) phase: u32,
+    pub(crate) task_weight: f64,
+    #[serde(flatten)]
+    pub(crate) learning: Map<String, Value>,
+    #[serde(flatten)]
+    pub(crate) decision: DecisionFigures,
+    #[serde(flatten)]
+    pub(crate) gait: GaitFigures,
+    #[serde(flatten)]
+    pub(crate) traffic: Traffic,
+    pub(crate) timing: Timing,
+}
+
+/// The figures of learning that depend on nothing but the batches.
+pub(crate) fn figures(report: &IterationReport) -> Map<String, Value> {
+    let Ok(Value::Object(mut figures)) = serde_json::to_value(report) else {
+        unreachable!("a report is a record of numbers");
+    };
+    // Counted by this shell, which also counts refused iterations; seconds are told under `timing`.
+    for other in ["iteration", "samples", "seconds"] {
+        figures.remove(other);
+    }
+    figures
+}
+
+/// An iteration whose update was refused.
+#[derive(Serialize)]
+pub(crate) struct Refused {
+    pub(crate) iteration: u64,
+    pub(crate) samples: u64,
+    /// What was not finite.
+    pub(crate) fault: String,
+}
+
+/// The scheduler's numbers that were in force.
+#[derive(Default, Serialize)]
+pub(crate) struct DecisionFigures {
+    breakout_rate: Option<f64>,
+    breakout_threshold: Option<f64>,
+    style_trend: Option<f64>,
+    switched_at: Option<u64>,
+    lower_bound: Option<f64>,
+    upper_bound: Option<f64>,
+    scheduler_away: bool,
+}
+
+impl DecisionFigures {
+    pub(crate) fn of(guide: &Guide, scheduler_away: bool) -> Self {
+        let Some(directive) = &guide.directive else {
+            return Self {
+                scheduler_away,
+                ..Self::default()
+            };
+        };
+        let (lower_bound, upper_bound) = directive.bounds().unzip();
+        Self {
+            breakout_rate: directive.breakout_rate(),
+            breakout_threshold: Some(directive.threshold),
+            style_trend: directive.trend(),
+            switched_at: directive.switched_at(),
+            lower_bound,
+            upper_bound,
+            scheduler_away,
+        }
+    }
+}
+
+/// Is it a walk, a hop, a stand?
+#[derive(Serialize)]
+pub(crate) struct GaitFigures {
+    hip_correlation: Option<f64>,
+    stride_rate_hz: Option<f64>,
+    duty_factor: Option<f64>,
+    flight_share: Option<f64>,
+}
+
+impl From<Gait> for GaitFigures {
+    fn from(gait: Gait) -> Self {
+        Self {
+            hip_correlation: gait.hip_correlation(),
+            stride_rate_hz: gait.stride_rate(50.0),
+            duty_factor: gait.duty_factor(),
+            flight_share: gait.flight_share(),
+        }
+    }
+}
+
+/// What became of the rollouts. Counts are sums since the learner started.
+#[derive(Serialize)]
+pub(crate) struct Traffic {
+    actors: usize,
+    rollouts: usize,
+    policy_lag: f64,
+    dropped: u64,
+    duplicated: u64,
+    stale: u64,
+    surplus: u64,
+}
+
+impl Traffic {
+    pub(crate) fn of(gathered: &Gathered, totals: Totals, surplus: u64) -> Self {
+        Self {
+            actors: gathered.actors,
+            rollouts: gathered.rollouts,
+            policy_lag: gathered.policy_lag,
+            dropped: totals.dropped,
+            duplicated: totals.duplicated,
+            stale: totals.stale,
+            surplus,
+        }
+    }
+}
+
+/// Where the time went, seconds of wall clock.
+#[derive(Serialize)]
+pub(crate) struct Timing {
+    /// Since the run's first start, pauses between launches left out.
+    pub(crate) seconds: f64,
+    /// This iteration, from broadcast to broadcast.
+    pub(crate) iteration_seconds: f64,
+    pub(crate) samples_per_second: f64,
+    /// Waiting for and copying rollouts.
+    pub(crate) gather_seconds: f64,
+    /// From the batch to the new weights.
+    pub(crate) learn_seconds: f64,
+    /// The parts of learning.
+    pub(crate) learning: Seconds,
+    /// Of the actors: the slowest rollout, and means of its parts.
+    pub(crate) collect_seconds: f64,
+    pub(crate) physics_seconds: f64,
+    pub(crate) inference_seconds: f64,
+    pub(crate) waiting_seconds: f64,
+}

@@ -1,0 +1,218 @@
+//! What the learner knows: how it begins, grows by an iteration, and is written to a checkpoint.
+
+use std::sync::OnceLock;
+use std::time::Instant;
+
+use amp::{Batch, IterationReport, Learning, LearningError};
+use anyhow::{Context, Result};
+use motion::TRANSITION;
+use protocol::RewardReport;
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+use run::{Checkpoint, CheckpointError, Folder};
+use serde::{Deserialize, Serialize};
+use tracing::info;
+
+use crate::config::LearnerConfig;
+use crate::guidance::{Guide, Remembered};
+use crate::robot;
+
+/// This shell's own share of a checkpoint.
+const SHELL: &str = "shell.json";
+/// Networks, optimisers, normalisers, replay.
+const LEARNING: &str = "learning.bin";
+/// The flat policy alone, little-endian f32, for whoever wants no more.
+const POLICY: &str = "policy.bin";
+
+/// The learner between two iterations.
+pub(crate) struct State {
+    pub(crate) learning: Learning,
+    /// Iterations done; also the version of the weights.
+    pub(crate) iteration: u64,
+    /// Transitions gathered since the run's first start.
+    pub(crate) samples: u64,
+    /// Seconds of learning before this start.
+    pub(crate) seconds_before: f64,
+    /// How the last iteration was paid, to be reported again after a resume.
+    pub(crate) last_report: Option<StoredReport>,
+    pub(crate) remembered: Option<Remembered>,
+    generator: Pcg64Mcg,
+    /// The iteration of the newest checkpoint; writing it again would lose the actors' share.
+    saved: Option<u64>,
+}
+
+/// A reward report as a checkpoint keeps it.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct StoredReport {
+    iteration: u64,
+    samples: u64,
+    style_mean: f64,
+    style_std: f64,
+    style_min: f64,
+    style_max: f64,
+    task_mean: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Shell {
+    samples: u64,
+    seconds: f64,
+    last_report: Option<StoredReport>,
+    remembered: Option<Remembered>,
+    generator: Pcg64Mcg,
+}
+
+impl State {
+    /// A new learner, or with `resume` the one of the newest checkpoint. What `metrics.jsonl` says
+    /// of later iterations is dropped: they are about to happen again.
+    pub(crate) fn begin(folder: &Folder, config: &LearnerConfig, resume: bool) -> Result<Self> {
+        let learning = Learning::new(config.learning.clone(), robot(), config.run.seed)
+            .context("setting up the networks")?
+            .with_clock(seconds);
+        let mut state = Self {
+            learning,
+            iteration: 0,
+            samples: 0,
+            seconds_before: 0.0,
+            last_report: None,
+            remembered: None,
+            // Any stream but those that the networks' own seeds begin.
+            generator: Pcg64Mcg::seed_from_u64(config.run.seed ^ 0x0045_5850_4552_5453),
+            saved: None,
+        };
+        if resume {
+            let checkpoint = folder.checkpoints().open_newest(&shape(config))?;
+            state.take_up(&checkpoint)?;
+            info!(iteration = state.iteration, "checkpoint taken up");
+        }
+        run::metrics::truncate_after(&folder.metrics_path(), state.iteration)?;
+        Ok(state)
+    }
+
+    fn take_up(&mut self, checkpoint: &Checkpoint) -> Result<()> {
+        let part = |name: &str| {
+            checkpoint
+                .part(name)
+                .with_context(|| format!("the checkpoint has no part `{name}`"))
+        };
+        let shell: Shell =
+            serde_json::from_slice(part(SHELL)?).with_context(|| format!("reading `{SHELL}`"))?;
+        self.learning
+            .load(part(LEARNING)?)
+            .with_context(|| format!("reading `{LEARNING}`"))?;
+        self.iteration = checkpoint.iteration;
+        self.saved = Some(checkpoint.iteration);
+        self.samples = shell.samples;
+        self.seconds_before = shell.seconds;
+        self.last_report = shell.last_report;
+        self.remembered = shell.remembered;
+        self.generator = shell.generator;
+        Ok(())
+    }
+
+    /// One iteration. It counts whether or not its update was good: the actors need a new version
+    /// to act again. After a refusal that version is the last good policy.
+    pub(crate) fn learn(
+        &mut self,
+        batch: &Batch,
+        config: &LearnerConfig,
+        guide: &Guide,
+    ) -> Result<IterationReport, LearningError> {
+        self.iteration += 1;
+        self.samples += batch.rows() as u64;
+        let generator = &mut self.generator;
+        let mut experts = |rows: &mut [f32]| {
+            for row in rows.chunks_exact_mut(TRANSITION) {
+                config.experts.sample_transition(generator, row);
+            }
+        };
+        let report = self
+            .learning
+            .iterate(batch, &mut experts, guide.rule, guide.granularity);
+        if let Ok(report) = &report {
+            self.last_report = Some(StoredReport {
+                iteration: self.iteration,
+                samples: batch.rows() as u64,
+                style_mean: report.style_mean,
+                style_std: report.style_std,
+                style_min: report.style_min,
+                style_max: report.style_max,
+                task_mean: report.task_mean,
+            });
+        }
+        report
+    }
+
+    /// The newest iteration that the scheduler was told of; 0 before the first.
+    pub(crate) fn reported(&self) -> u64 {
+        self.last_report.map_or(0, |report| report.iteration)
+    }
+
+    /// Writes a checkpoint, unless this iteration has one, and drops those that are too many.
+    pub(crate) fn save(
+        &mut self,
+        folder: &Folder,
+        config: &LearnerConfig,
+        seconds: f64,
+    ) -> Result<(), CheckpointError> {
+        if self.saved == Some(self.iteration) {
+            return Ok(());
+        }
+        let shell = Shell {
+            samples: self.samples,
+            seconds,
+            last_report: self.last_report,
+            remembered: self.remembered,
+            generator: self.generator.clone(),
+        };
+        let shell = serde_json::to_vec_pretty(&shell).expect("the shell's share is plain data");
+        let policy: Vec<u8> = self
+            .learning
+            .policy_flat()
+            .iter()
+            .flat_map(|number| number.to_le_bytes())
+            .collect();
+        let checkpoints = folder.checkpoints();
+        checkpoints.write(
+            self.iteration,
+            &shape(config),
+            &[
+                (SHELL, &shell),
+                (LEARNING, &self.learning.save()),
+                (POLICY, &policy),
+            ],
+        )?;
+        self.saved = Some(self.iteration);
+        checkpoints.prune(config.run.keep_checkpoints)
+    }
+}
+
+impl StoredReport {
+    pub(crate) fn message(&self) -> RewardReport {
+        RewardReport {
+            iteration: self.iteration,
+            samples: self.samples,
+            style_mean: self.style_mean,
+            style_std: self.style_std,
+            style_min: self.style_min,
+            style_max: self.style_max,
+            task_mean: self.task_mean,
+            ..RewardReport::default()
+        }
+    }
+}
+
+/// Seconds since the first call: the pure crates own no clock.
+fn seconds() -> f64 {
+    static ORIGIN: OnceLock<Instant> = OnceLock::new();
+    ORIGIN.get_or_init(Instant::now).elapsed().as_secs_f64()
+}
+
+/// What a checkpoint must fit: the widths of all networks.
+fn shape(config: &LearnerConfig) -> String {
+    let learning = &config.learning;
+    format!(
+        "policy {:?} critic {:?} discriminator {:?}",
+        learning.policy.hidden, learning.policy.critic_hidden, learning.discriminator.hidden
+    )
+}

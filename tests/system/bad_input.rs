@@ -1,0 +1,146 @@
+//! Bad input: one clear error that names the place and the remedy, and a non-zero exit.
+
+use std::fs;
+use std::process::Command;
+
+use crate::harness::{Alone, Process, Runs, finish, program, until_iteration};
+
+/// Runs `ampco train --preset smoke` with `arguments`, which must be refused before anything starts.
+fn refused(arguments: &[&str]) -> String {
+    let runs = Runs::new();
+    let mut process = runs.train("bad", arguments);
+    let status = process.end();
+    let said = process.stderr.text();
+    assert!(!status.success(), "{arguments:?} was accepted: {said}");
+    assert!(
+        !runs.run("bad").join("metrics.jsonl").exists(),
+        "something was started before the refusal"
+    );
+    let complaint: Vec<&str> = said
+        .lines()
+        .filter(|line| !line.trim().is_empty())
+        .collect();
+    assert_eq!(complaint.len(), 1, "one clear error, not {said}");
+    said
+}
+
+fn assert_says(said: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(said.contains(part), "{said:?} does not say {part:?}");
+    }
+}
+
+#[test]
+fn an_unknown_key_is_answered_with_the_closest() {
+    let said = refused(&["--set", "ppo.gama=0.9"]);
+    assert_says(&said, &["ppo", "gama", "gamma"]);
+}
+
+#[test]
+fn an_unknown_key_of_a_preset_file_names_the_file() {
+    let runs = Runs::new();
+    let preset = runs.path().join("mine.toml");
+    fs::write(&preset, "[ppo]\nepohcs = 3\n").expect("written");
+    let mut command = Command::new(program("ampco"));
+    command
+        .args(["train", "--run", "bad", "--runs-dir"])
+        .arg(runs.path());
+    command.arg("--preset").arg(&preset);
+    let (success, _, said) = finish(command);
+    assert!(!success);
+    assert_says(&said, &["mine.toml", "epohcs", "epochs"]);
+}
+
+#[test]
+fn values_out_of_range_name_field_and_value() {
+    assert_says(&refused(&["--set", "ppo.gamma=1.5"]), &["gamma", "1.5"]);
+    assert_says(&refused(&["--set", "fleet.steps=0"]), &["steps", "0"]);
+    assert_says(
+        &refused(&["--set", "scheduler.percentile=95"]),
+        &["percentile", "95"],
+    );
+    assert_says(
+        &refused(&["--set", "task.fall_height=high"]),
+        &["fall_height"],
+    );
+}
+
+#[test]
+fn motion_files_that_cannot_be_used_are_named() {
+    let said = refused(&["--set", "motion.clips=[{file=\"no-such.csv\",fps=50}]"]);
+    assert_says(&said, &["no-such.csv"]);
+
+    let runs = Runs::new();
+    let broken = runs.path().join("broken.csv");
+    fs::write(&broken, "0,0,0.78,1,0,0,0,what\n").expect("written");
+    let clips = format!(
+        "motion.clips=[{{file={:?},fps=50}}]",
+        broken.display().to_string()
+    );
+    let said = refused(&["--set", &clips]);
+    assert_says(&said, &["broken.csv"]);
+}
+
+#[test]
+fn a_checkpoint_of_another_shape_is_refused() {
+    let runs = Runs::new();
+    let mut group = runs.train("shape", &["--actors", "1", "--iterations", "1"]);
+    assert!(group.end().success(), "{}", group.stderr.text());
+    let mut resumed = runs.resume(
+        "shape",
+        &["--set", "policy.hidden=[48, 24]", "--iterations", "2"],
+    );
+    let status = resumed.end();
+    let said = resumed.stderr.text();
+    assert!(!status.success(), "{said}");
+    assert_says(&said, &["shape", "48"]);
+}
+
+#[test]
+fn a_second_learner_of_a_run_is_refused() {
+    let run = Alone::new(1);
+    let _first = run.start("ampco-learner", &[]);
+    let _actor = run.start("ampco-actor", &["--index", "0"]);
+    until_iteration(run.path(), 1);
+    let mut second = run.start("ampco-learner", &[]);
+    assert!(!second.end().success());
+    assert_says(&second.stderr.text(), &["learner", "alone"]);
+}
+
+#[test]
+fn a_second_group_of_a_run_is_refused() {
+    let runs = Runs::new();
+    let _first = runs.train("same", &["--actors", "1"]);
+    until_iteration(&runs.run("same"), 1);
+    let mut second = runs.train("same", &["--actors", "1"]);
+    assert!(!second.end().success());
+    assert_says(&second.stderr.text(), &["same"]);
+    let mut resumed = runs.resume("same", &[]);
+    assert!(!resumed.end().success());
+}
+
+#[test]
+fn a_full_shared_memory_is_said_and_kills_nobody_by_a_bus_error() {
+    // A file system of one megabyte over /dev/shm, in a mount namespace of the test's own.
+    let runs = Runs::new();
+    let train = format!(
+        "mount -t tmpfs -o size=1m tmpfs /dev/shm && exec {} train --preset smoke --run full --runs-dir {}",
+        program("ampco").display(),
+        runs.path().display()
+    );
+    let mut command = Command::new("unshare");
+    command.args(["--user", "--map-root-user", "--mount", "sh", "-c", &train]);
+    let mut process = Process::start(command);
+    let status = process.end();
+    let said = process.stderr.text();
+    if said.contains("unshare:") || said.contains("mount:") {
+        // A kernel that grants no namespaces cannot run this test; the message says which.
+        assert!(
+            said.contains("ermitted") || said.contains("denied"),
+            "{said}"
+        );
+        return;
+    }
+    assert_eq!(status.code(), Some(1), "{said}");
+    assert_says(&said, &["shared memory", "/dev/shm"]);
+}

@@ -1,0 +1,281 @@
+//! Programs under test: found, started in a folder of their own, waited for with a deadline,
+//! killed when the test ends.
+
+use std::fs;
+use std::io::Read;
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use rustix::process::{Pid, Signal, kill_process, kill_process_group};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// Longest that anything here may take on a busy machine.
+pub(crate) const PATIENCE: Duration = Duration::from_secs(90);
+
+/// How often a condition is looked at again.
+const GLANCE: Duration = Duration::from_millis(10);
+
+/// A folder of runs that vanishes with the test.
+pub(crate) struct Runs(TempDir);
+
+impl Runs {
+    pub(crate) fn new() -> Self {
+        Self(tempfile::tempdir().expect("a temporary folder"))
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    pub(crate) fn run(&self, name: &str) -> PathBuf {
+        self.path().join(name)
+    }
+
+    /// `ampco train --resume` of a run.
+    pub(crate) fn resume(&self, name: &str, arguments: &[&str]) -> Process {
+        let mut command = Command::new(program("ampco"));
+        command
+            .args(["train", "--resume", "--run", name, "--runs-dir"])
+            .arg(self.path())
+            .args(arguments);
+        Process::start(command)
+    }
+
+    /// `ampco train` of the smoke preset with further arguments.
+    pub(crate) fn train(&self, name: &str, arguments: &[&str]) -> Process {
+        let mut command = Command::new(program("ampco"));
+        command
+            .args(["train", "--preset", "smoke", "--run", name, "--runs-dir"])
+            .arg(self.path())
+            // Endless, unless the test says otherwise.
+            .args(["--set", "run.iterations=0"])
+            .args(arguments);
+        Process::start(command)
+    }
+}
+
+/// A run's folder in which single processes are started by hand, without a supervisor.
+pub(crate) struct Alone {
+    runs: Runs,
+    folder: run::Folder,
+}
+
+impl Alone {
+    /// The smoke preset for `actors` actors.
+    pub(crate) fn new(actors: i64) -> Self {
+        let runs = Runs::new();
+        let folder = run::Folder::create(runs.path(), "alone").expect("a folder");
+        let preset = repository().join("deploy/presets/smoke.toml");
+        let mut config = run::Config::read(&preset).expect("the smoke preset");
+        config.put("fleet.actors", actors, "the test");
+        config.put("run.iterations", 0, "the test");
+        config
+            .write(&folder.config_path(), "test")
+            .expect("written");
+        Self { runs, folder }
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Changes one value of the configuration, before anything is started.
+    pub(crate) fn set(&self, key: &str, value: i64) {
+        let mut config = self.folder.config().expect("a configuration");
+        config.put(key, value, "the test");
+        config
+            .write(&self.folder.config_path(), "test")
+            .expect("written");
+    }
+
+    pub(crate) fn start(&self, name: &str, arguments: &[&str]) -> Process {
+        let mut command = Command::new(program(name));
+        command.arg("--run-dir").arg(self.path()).args(arguments);
+        Process::start(command)
+    }
+}
+
+impl Drop for Alone {
+    /// What a supervisor would clean up.
+    fn drop(&mut self) {
+        if let Ok(domain) = protocol::Domain::for_run(self.path()) {
+            let _ = domain.remove();
+        }
+        let _ = &self.runs;
+    }
+}
+
+/// The repository's top folder.
+pub(crate) fn repository() -> PathBuf {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR"));
+    tests.parent().expect("a parent folder").to_owned()
+}
+
+/// A program of this workspace, beside the test binary's folder.
+pub(crate) fn program(name: &str) -> PathBuf {
+    let here = std::env::current_exe().expect("the test's own path");
+    let path = here
+        .parent()
+        .and_then(Path::parent)
+        .expect("target/<profile>/deps")
+        .join(name);
+    assert!(
+        path.exists(),
+        "{} is missing: build the programs first, as deploy/check.sh does",
+        path.display()
+    );
+    path
+}
+
+/// A child that leads a process group of its own and does not outlive the test.
+pub(crate) struct Process {
+    child: Child,
+    pub(crate) stdout: Captured,
+    pub(crate) stderr: Captured,
+}
+
+/// Everything a stream said so far, read by a thread of its own.
+pub(crate) struct Captured(
+    std::sync::Arc<std::sync::Mutex<Vec<u8>>>,
+    Option<thread::JoinHandle<()>>,
+);
+
+impl Captured {
+    fn read(mut from: impl Read + Send + 'static) -> Self {
+        let text = std::sync::Arc::new(std::sync::Mutex::new(Vec::new()));
+        let into = text.clone();
+        let reader = thread::spawn(move || {
+            let mut chunk = [0; 4096];
+            while let Ok(count @ 1..) = from.read(&mut chunk) {
+                into.lock()
+                    .expect("no panic while held")
+                    .extend(&chunk[..count]);
+            }
+        });
+        Self(text, Some(reader))
+    }
+
+    pub(crate) fn text(&self) -> String {
+        String::from_utf8_lossy(&self.0.lock().expect("no panic while held")).into_owned()
+    }
+
+    fn finish(&mut self) {
+        if let Some(reader) = self.1.take() {
+            reader.join().expect("the reader ends with its stream");
+        }
+    }
+}
+
+impl Process {
+    pub(crate) fn start(mut command: Command) -> Self {
+        let mut child = command
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .process_group(0)
+            .spawn()
+            .unwrap_or_else(|error| panic!("{command:?}: {error}"));
+        let stdout = Captured::read(child.stdout.take().expect("piped"));
+        let stderr = Captured::read(child.stderr.take().expect("piped"));
+        Self {
+            child,
+            stdout,
+            stderr,
+        }
+    }
+
+    pub(crate) fn pid(&self) -> Pid {
+        Pid::from_child(&self.child)
+    }
+
+    /// Sends a signal to this process alone.
+    pub(crate) fn signal(&self, signal: Signal) {
+        kill_process(self.pid(), signal).expect("the process is alive");
+    }
+
+    /// Waits for the end, which must come within [`PATIENCE`].
+    pub(crate) fn end(&mut self) -> ExitStatus {
+        let status = until("the end of a process", || {
+            self.child.try_wait().expect("a child can be waited for")
+        });
+        self.stdout.finish();
+        self.stderr.finish();
+        status
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        if matches!(self.child.try_wait(), Ok(None)) {
+            let _ = kill_process_group(self.pid(), Signal::KILL);
+            let _ = self.child.kill();
+            let _ = self.child.wait();
+        }
+    }
+}
+
+/// Runs a command to its end: success, what it said on standard output, on standard error.
+pub(crate) fn finish(command: Command) -> (bool, String, String) {
+    let mut process = Process::start(command);
+    let status = process.end();
+    (
+        status.success(),
+        process.stdout.text(),
+        process.stderr.text(),
+    )
+}
+
+/// Looks again and again until there is an answer; panics, naming what was awaited, if none comes.
+pub(crate) fn until<T>(awaited: &str, mut look: impl FnMut() -> Option<T>) -> T {
+    let started = Instant::now();
+    loop {
+        if let Some(answer) = look() {
+            return answer;
+        }
+        assert!(
+            started.elapsed() < PATIENCE,
+            "waited {PATIENCE:?} in vain for {awaited}"
+        );
+        thread::park_timeout(GLANCE);
+    }
+}
+
+/// All metrics of a run so far.
+pub(crate) fn metrics(run: &Path) -> Vec<Value> {
+    run::metrics::read(&run.join("metrics.jsonl")).expect("readable metrics")
+}
+
+/// Waits until a run has finished iteration `iteration` or a later one.
+pub(crate) fn until_iteration(run: &Path, iteration: u64) -> Value {
+    until(
+        &format!("iteration {iteration} of {}", run.display()),
+        || {
+            metrics(run)
+                .into_iter()
+                .next_back()
+                .filter(|line| line["iteration"].as_u64() >= Some(iteration))
+        },
+    )
+}
+
+/// The process that holds a role in a run, from its lock.
+pub(crate) fn holder(run: &Path, role: &str) -> Option<Pid> {
+    let folder = run::Folder::open(run).ok()?;
+    let pid = folder.holder(role).ok()??;
+    Pid::from_raw(pid.trim().parse().ok()?)
+}
+
+/// What two runs must agree on: every metric but the timings.
+pub(crate) fn without_timing(mut line: Value) -> Value {
+    line.as_object_mut().expect("a record").remove("timing");
+    line
+}
+
+/// The bytes of a file, or a panic that names it.
+pub(crate) fn bytes(path: &Path) -> Vec<u8> {
+    fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}

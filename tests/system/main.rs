@@ -1,0 +1,14 @@
+//! System tests: they spawn the real programs, talk to them as their peers do, and kill them.
+//!
+//! One binary, so that it links once. Nothing sleeps for luck: every wait is for something, and has
+//! a deadline. Every test has a folder of its own, so runs never meet.
+
+#![allow(missing_docs)]
+
+mod bad_input;
+mod group;
+mod harness;
+mod licences;
+mod pair;
+mod repeat;
+mod schedule;
