@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use ampco::{Granularity, Report, Rule, Schedule, ScheduleConfig};
+use ampco::{Report, Rule, Schedule, ScheduleConfig};
 use protocol::{
     Answer, Directive, DirectivePublisher, DirectiveSubscriber, Domain, Node, RewardPublisher,
     RewardReport, RewardSubscriber, Shutdown,
@@ -10,7 +10,7 @@ use protocol::{
 use rustix::process::Signal;
 use serde_json::json;
 
-use crate::harness::{Alone, Process, metrics, until};
+use crate::harness::{Alone, metrics, until};
 
 /// A window of four: both windows are full after report 5, the first with an indicator from report
 /// 2 on; a reward that no longer rises breaks out of nothing.
@@ -141,7 +141,6 @@ fn the_learner_obeys_the_directive_that_answers_its_report() {
             upper: f64::NAN,
             breakout_rate: f64::NAN,
             trend: f64::NAN,
-            granularity: u32::from(Granularity::Sample != Granularity::default()),
             ..Directive::default()
         };
         match rule(iteration) {

@@ -5,6 +5,7 @@ use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use protocol::Domain;
@@ -21,14 +22,20 @@ const OBEDIENT: &str =
 /// Lives until it is killed.
 const DEAF: &str = "trap '' TERM\nready\nexec sleep 1000\n";
 
-/// A copy of the program with stand-ins beside it.
+/// Held while a file is written that is to be executed, and while a process is started. A process
+/// started by another test would inherit the open file for a moment, and nobody can execute a file
+/// that is open for writing.
+static QUIET: Mutex<()> = Mutex::new(());
+
+/// The program with stand-ins beside it.
 struct Stage(tempfile::TempDir);
 
 impl Stage {
     fn new(scheduler: &str, learner: &str, actor: &str) -> Self {
-        let stage = Self(tempfile::tempdir().unwrap());
-        // A copy and not a link: the program looks beside the file that it really is.
-        fs::copy(env!("CARGO_BIN_EXE_ampco"), stage.path("ampco")).unwrap();
+        let _nobody_starts = QUIET.lock();
+        let stage = Self(tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap());
+        // A hard link: the program looks beside the file that it really is.
+        fs::hard_link(env!("CARGO_BIN_EXE_ampco"), stage.path("ampco")).unwrap();
         for (name, body) in [
             ("scheduler", scheduler),
             ("learner", learner),
@@ -54,26 +61,23 @@ impl Stage {
         text.lines().map(str::to_owned).collect()
     }
 
+    /// `ampco train` of the smoke preset with one actor.
     fn train(&self, arguments: &[&str]) -> Guard {
-        let child = Command::new(self.path("ampco"))
-            .args([
-                "train",
-                "--preset",
-                "smoke",
-                "--run",
-                "play",
-                "--actors",
-                "1",
-                "--runs-dir",
-            ])
+        self.ampco(&[&["--preset", "smoke", "--actors", "1"], arguments].concat())
+    }
+
+    /// `ampco train` of the run `play`.
+    fn ampco(&self, arguments: &[&str]) -> Guard {
+        let mut command = Command::new(self.path("ampco"));
+        command
+            .args(["train", "--run", "play", "--runs-dir"])
             .arg(self.path("runs"))
             .args(arguments)
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        Guard(Some(child))
+            .stderr(Stdio::piped());
+        let _nobody_writes = QUIET.lock();
+        Guard(Some(command.spawn().unwrap()))
     }
 
     /// Waits until a stand-in has been started so many times, and returns the newest's process.
@@ -290,13 +294,8 @@ fn bad_configuration_starts_nothing_and_exits_with_two() {
             "none.csv",
         ),
     ] {
-        let mut command = Command::new(stage.path("ampco"));
-        command
-            .args(["train", "--run", "play", "--runs-dir"])
-            .arg(stage.path("runs"));
-        let output = command.args(arguments).output().unwrap();
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{said}");
+        let (status, said) = stage.ampco(&arguments).end();
+        assert_eq!(status, Some(2), "{said}");
         assert!(said.contains(words), "{said}");
         assert_eq!(said.lines().count(), 1, "one clear line, not {said}");
     }
@@ -321,13 +320,8 @@ fn a_run_is_not_overwritten_and_a_running_one_not_joined() {
     run.checkpoints()
         .write(1, "any", &[("part", b"x")])
         .unwrap();
-    let mut command = Command::new(stage.path("ampco"));
-    command
-        .args(["train", "--resume", "--run", "play", "--runs-dir"])
-        .arg(stage.path("runs"));
-    let output = command.output().unwrap();
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(1), "{said}");
+    let (status, said) = stage.ampco(&["--resume"]).end();
+    assert_eq!(status, Some(1), "{said}");
     assert!(said.contains("already has a supervisor"), "{said}");
 
     train.signal(Signal::TERM);
