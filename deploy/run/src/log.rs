@@ -4,7 +4,7 @@
 //! `info,learner=trace`) changes what the file holds.
 
 use std::fs::{File, OpenOptions};
-use std::io;
+use std::io::{self, IsTerminal};
 use std::path::Path;
 use std::sync::Mutex;
 
@@ -63,6 +63,7 @@ where
     S: tracing::Subscriber + for<'a> LookupSpan<'a>,
 {
     fmt::layer()
+        .with_ansi(io::stderr().is_terminal())
         .without_time()
         .with_target(false)
         .with_writer(io::stderr)
