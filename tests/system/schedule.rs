@@ -61,14 +61,17 @@ impl LearnersPart {
             task_mean,
             ..RewardReport::default()
         };
-        self.rewards.send(report).expect("sent");
-        let answer = self
-            .directives
-            .wait_for(self.node.incarnation(), iteration, Duration::from_secs(60))
-            .expect("readable");
-        let Answer::Came(directive) = answer else {
-            panic!("no answer to report {iteration}: {answer:?}");
-        };
+        // A scheduler that is still starting hears nothing; a learner would go on without it.
+        let directive = until(&format!("the answer to report {iteration}"), || {
+            self.rewards.send(report).expect("sent");
+            let learner = self.node.incarnation();
+            let patience = Duration::from_millis(500);
+            match self.directives.wait_for(learner, iteration, patience) {
+                Ok(Answer::Came(directive)) => Some(directive),
+                Ok(_) => None,
+                Err(error) => panic!("{error}"),
+            }
+        });
         assert_eq!(directive.iteration, iteration);
         directive
     }

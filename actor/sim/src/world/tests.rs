@@ -260,19 +260,18 @@ fn joints_stop_at_their_limits() {
     let mut targets = DEFAULT_POSE;
     targets[3] = -1.5; // left knee, stretched beyond its stop at −0.087 rad
     targets[16] = 3.5; // left elbow, bent beyond its stop at 2.094 rad
-    let mut beyond = 0.0_f32;
+    let (mut knee, mut elbow) = (f32::MAX, f32::MIN);
     for _ in 0..40 {
         world.control_step(&mut engine, &Gains::of_the_robot(), &targets);
         let q = world.state().joint_positions;
-        beyond = beyond.max(-0.087_267 - q[3]).max(q[16] - 2.0944);
+        (knee, elbow) = (knee.min(q[3]), elbow.max(q[16]));
     }
+    let beyond = (-0.087_267 - knee).max(elbow - 2.0944);
     assert!(beyond < 0.25, "{beyond} rad beyond a stop"); // MuJoCo: 0.2 to 0.56 in like tests
-    let q = world.state().joint_positions;
+    // They bounce off, so where they are at the end is chance; that they got there is not.
     assert!(
-        q[3] < 0.0 && q[16] > 2.0,
-        "the motors did push: {} {}",
-        q[3],
-        q[16]
+        knee < -0.08 && elbow > 2.08,
+        "the motors did push: {knee} {elbow}"
     );
 }
 

@@ -102,7 +102,10 @@ pub(super) fn walk(
         }
     }
     let fallen = survived.iter().flatten().count();
-    let lived: u32 = survived.iter().map(|fell| fell.unwrap_or(conditions.steps)).sum();
+    let lived: u32 = survived
+        .iter()
+        .map(|fell| fell.unwrap_or(conditions.steps))
+        .sum();
     Ok(sums.outcome(n, fallen, f64::from(lived) / n as f64 / 50.0))
 }
 
