@@ -8,6 +8,7 @@
 //! | --- | --- |
 //! | N environments in a fixed order: step, save, restore | [`fleet`] |
 //! | one episode's life | `env` |
+//! | memory for a step of a fleet | [`rows`] |
 //! | the task reward (Eq. 14), falls, time-outs | [`task`] |
 //! | commands c_t | [`command`] |
 //! | where episodes begin | [`start`] |
@@ -25,6 +26,7 @@ mod env;
 pub mod fleet;
 pub mod model;
 pub mod randomization;
+pub mod rows;
 pub mod start;
 pub mod task;
 pub mod world;
@@ -36,6 +38,7 @@ pub use engine::Engine;
 pub use fleet::{Fleet, SimError, StepOut};
 pub use model::Variation;
 pub use randomization::RandomizationConfig;
+pub use rows::StepRows;
 pub use start::{StartConfig, Starts};
 pub use task::TaskConfig;
 pub use world::{Exertion, World};

@@ -2,54 +2,19 @@
 
 use super::*;
 use crate::command::CommandConfig;
+use crate::rows::StepRows;
 use crate::start::StartConfig;
 use g1::JOINTS;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// Owned slices for one step.
-#[derive(Clone, Debug, PartialEq)]
-struct Buffers {
-    task_rewards: Vec<f32>,
-    energies: Vec<f32>,
-    tracking_errors: Vec<f32>,
-    ends: Vec<f32>,
-    episode_steps: Vec<f32>,
-    next_features: Vec<f32>,
-    foot_forces: Vec<f32>,
-    timeout_observations: Vec<f32>,
-}
-
 /// What no step writes.
 const UNTOUCHED: f32 = -77.0;
 
-fn step(fleet: &mut Fleet, actions: &[f32]) -> Buffers {
-    let n = fleet.len();
-    let row = |dim: usize| vec![UNTOUCHED; n * dim];
-    let mut b = Buffers {
-        task_rewards: row(1),
-        energies: row(1),
-        tracking_errors: row(1),
-        ends: row(1),
-        episode_steps: row(1),
-        next_features: row(FEATURES),
-        foot_forces: row(2),
-        timeout_observations: row(OBSERVATION),
-    };
-    fleet.step(
-        actions,
-        &mut StepOut {
-            task_rewards: &mut b.task_rewards,
-            energies: &mut b.energies,
-            tracking_errors: &mut b.tracking_errors,
-            ends: &mut b.ends,
-            episode_steps: &mut b.episode_steps,
-            next_features: &mut b.next_features,
-            foot_forces: &mut b.foot_forces,
-            timeout_observations: &mut b.timeout_observations,
-        },
-    );
-    b
+fn step(fleet: &mut Fleet, actions: &[f32]) -> StepRows {
+    let mut rows = StepRows::filled(fleet.len(), UNTOUCHED);
+    fleet.step(actions, &mut rows.out());
+    rows
 }
 
 fn walking_frames() -> Starts {

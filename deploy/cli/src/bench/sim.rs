@@ -10,7 +10,7 @@ use policy::{Policy, Shape};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde_json::{Value, json};
-use sim::{Fleet, RandomizationConfig, Starts, StepOut, TaskConfig};
+use sim::{Fleet, RandomizationConfig, Starts, StepRows, TaskConfig};
 
 /// Standard deviation of the benchmark's actions; 0.25 rad per unit, as a policy in training moves.
 const EXPLORATION: f32 = 0.5;
@@ -137,7 +137,7 @@ impl SimBench {
                 measured.inference += thinking.elapsed().as_secs_f64();
                 rows.step(&mut fleet);
                 measured.steps += n;
-                measured.resets += rows.ends.iter().filter(|end| **end != 0.0).count();
+                measured.resets += rows.outcome.ends.iter().filter(|end| **end != 0.0).count();
             }
         }
         measured.faults = fleet.faults();
@@ -175,31 +175,16 @@ struct Rows {
     actions: Vec<f32>,
     means: Vec<f32>,
     log_probs: Vec<f32>,
-    task_rewards: Vec<f32>,
-    energies: Vec<f32>,
-    tracking_errors: Vec<f32>,
-    ends: Vec<f32>,
-    episode_steps: Vec<f32>,
-    next_features: Vec<f32>,
-    foot_forces: Vec<f32>,
-    timeout_observations: Vec<f32>,
+    outcome: StepRows,
 }
 
 impl Rows {
     fn new(n: usize) -> Self {
-        let row = |dimension: usize| vec![0.0; n * dimension];
         Self {
-            actions: row(g1::ACTION),
-            means: row(g1::ACTION),
-            log_probs: row(1),
-            task_rewards: row(1),
-            energies: row(1),
-            tracking_errors: row(1),
-            ends: row(1),
-            episode_steps: row(1),
-            next_features: row(g1::FEATURES),
-            foot_forces: row(2),
-            timeout_observations: row(g1::OBSERVATION),
+            actions: vec![0.0; n * g1::ACTION],
+            means: vec![0.0; n * g1::ACTION],
+            log_probs: vec![0.0; n],
+            outcome: StepRows::filled(n, 0.0),
         }
     }
 
@@ -212,19 +197,7 @@ impl Rows {
     }
 
     fn step(&mut self, fleet: &mut Fleet) {
-        fleet.step(
-            &self.actions,
-            &mut StepOut {
-                task_rewards: &mut self.task_rewards,
-                energies: &mut self.energies,
-                tracking_errors: &mut self.tracking_errors,
-                ends: &mut self.ends,
-                episode_steps: &mut self.episode_steps,
-                next_features: &mut self.next_features,
-                foot_forces: &mut self.foot_forces,
-                timeout_observations: &mut self.timeout_observations,
-            },
-        );
+        fleet.step(&self.actions, &mut self.outcome.out());
     }
 }
 

@@ -2,8 +2,8 @@
 
 use anyhow::Result;
 use g1::gait::Gait;
-use g1::{ACTION, FEATURES, OBSERVATION};
-use sim::{Fleet, RandomizationConfig, StepOut};
+use g1::{ACTION, FEATURES};
+use sim::{Fleet, RandomizationConfig, StepRows};
 
 use super::subject::Subject;
 
@@ -85,14 +85,14 @@ pub(super) fn walk(
     for step in 0..conditions.steps {
         block.features.copy_from_slice(fleet.features());
         policy.means(fleet.observations(), n, &mut block.actions);
-        fleet.step(&block.actions, &mut block.rows.step_out());
+        fleet.step(&block.actions, &mut block.rows.out());
         judge.style_rewards(&block.features, &block.rows.next_features, &mut block.style);
         for robot in 0..n {
             if survived[robot].is_some() {
                 continue;
             }
             sums.add(&block, robot, forces_before[robot]);
-            forces_before[robot] = Some(block.rows.forces(robot));
+            forces_before[robot] = Some(block.forces(robot));
             if block.rows.ends[robot] == 1.0 {
                 survived[robot] = Some(step + 1);
             }
@@ -122,7 +122,7 @@ impl Sums {
         self.velocity[0] += f64::from(next[1]);
         self.velocity[1] += f64::from(next[2]);
         self.yaw_rate += f64::from(next[6]);
-        self.gait.add(next, rows.forces(robot), forces_before);
+        self.gait.add(next, block.forces(robot), forces_before);
     }
 
     fn outcome(self, episodes: usize, fallen: usize, seconds_survived: f64) -> Outcome {
@@ -147,56 +147,22 @@ struct Block {
     features: Vec<f32>,
     actions: Vec<f32>,
     style: Vec<f32>,
-    rows: Rows,
-}
-
-struct Rows {
-    task_rewards: Vec<f32>,
-    energies: Vec<f32>,
-    tracking_errors: Vec<f32>,
-    ends: Vec<f32>,
-    episode_steps: Vec<f32>,
-    next_features: Vec<f32>,
-    foot_forces: Vec<f32>,
-    timeout_observations: Vec<f32>,
+    rows: StepRows,
 }
 
 impl Block {
     fn new(n: usize) -> Self {
-        let rows = |width: usize| vec![0.0; n * width];
         Self {
-            features: rows(FEATURES),
-            actions: rows(ACTION),
-            style: rows(1),
-            rows: Rows {
-                task_rewards: rows(1),
-                energies: rows(1),
-                tracking_errors: rows(1),
-                ends: rows(1),
-                episode_steps: rows(1),
-                next_features: rows(FEATURES),
-                foot_forces: rows(2),
-                timeout_observations: rows(OBSERVATION),
-            },
-        }
-    }
-}
-
-impl Rows {
-    fn step_out(&mut self) -> StepOut<'_> {
-        StepOut {
-            task_rewards: &mut self.task_rewards,
-            energies: &mut self.energies,
-            tracking_errors: &mut self.tracking_errors,
-            ends: &mut self.ends,
-            episode_steps: &mut self.episode_steps,
-            next_features: &mut self.next_features,
-            foot_forces: &mut self.foot_forces,
-            timeout_observations: &mut self.timeout_observations,
+            features: vec![0.0; n * FEATURES],
+            actions: vec![0.0; n * ACTION],
+            style: Vec::with_capacity(n),
+            rows: StepRows::filled(n, 0.0),
         }
     }
 
+    /// Left and right foot force of a robot, N.
     fn forces(&self, robot: usize) -> [f32; 2] {
-        [self.foot_forces[2 * robot], self.foot_forces[2 * robot + 1]]
+        let forces = &self.rows.foot_forces;
+        [forces[2 * robot], forces[2 * robot + 1]]
     }
 }
