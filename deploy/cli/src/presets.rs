@@ -76,7 +76,7 @@ pub(crate) fn find(given: &str) -> Result<Preset> {
     if !path.is_file() {
         let remedy = run::nearest::remedy(given, &names());
         return Err(usage(format!(
-            "there is no preset and no file `{given}`; presets: {remedy}"
+            "there is no preset and no file `{given}`; {remedy}"
         )));
     }
     let path = path
