@@ -1,0 +1,244 @@
+//! Contacts: points against the ground, soft along the normal, dry friction across it.
+//!
+//! Separate because contact is a model of its own, with choices that mechanics does not make. Along
+//! the normal the point obeys φ̈ + b·φ̇ + k·φ = 0 softened by an impedance, as MuJoCo's `solref` and
+//! `solimp` say (defaults: 20 ms, critically damped, 0.9 to 0.95 over the first millimetre), taken
+//! implicitly over the step. Across it friction holds the point still as far as the cone |λ_t| ≤ μ·λ_n
+//! allows: a disk, not a pyramid, and without softness, so that a standing robot does not creep.
+//! Impulses come from projected Gauss–Seidel sweeps over the points, begun with those of the last step.
+
+mod reach;
+mod relax;
+
+use crate::block::{Block, row};
+use crate::factor::Factor;
+use crate::ground::Ground;
+use crate::kinematics::Walk;
+use crate::lane::Lane;
+use crate::spatial::Vec3;
+use crate::tree::{BASE, CHAIN, DEGREES, LIMBS, POINT_TABLE, POINTS, SOLE_POINTS, TRUNK, Tree};
+use reach::Reach;
+
+/// Time constant of the normal's return, s.
+const TIME_CONSTANT: f64 = 0.02;
+/// Impedance at the surface and from `WIDTH` on.
+const IMPEDANCE: [f64; 2] = [0.9, 0.95];
+/// Depth over which the impedance rises, m.
+const WIDTH: f64 = 0.001;
+
+/// A point that touches the ground in some lane.
+#[derive(Clone, Copy)]
+pub(crate) struct Contact<L> {
+    point: usize,
+    /// D^-½·L⁻ᵀ·Jᵀ along the limb's chain: normal, two tangents.
+    y: [[L; CHAIN]; 3],
+    /// What is missing to the wanted velocities before any impulse, m/s.
+    missing: [L; 3],
+    /// Impulse per missing velocity along the normal, kg; 0 in lanes without contact.
+    step: L,
+    /// Softness along the normal, 1/kg.
+    soft: L,
+    /// Inverse of the tangents' matrix, kg: first, mixed, second; 0 in lanes without contact.
+    grip: [L; 3],
+    /// Impulses, N·s.
+    impulse: [L; 3],
+}
+
+/// The contacts of a step, limb by limb.
+pub(crate) struct Contacts<L> {
+    list: [Contact<L>; POINTS],
+    /// First and one past the last of every limb.
+    of_limb: [(usize, usize); LIMBS],
+    reach: Reach<L>,
+}
+
+/// What all contacts of a step share.
+pub(crate) struct Touch<'a, L: Lane> {
+    pub(crate) token: L::Token,
+    pub(crate) lane: usize,
+    pub(crate) tree: &'a Tree<L::Scalar>,
+    pub(crate) ground: &'a Ground,
+    pub(crate) dt: L,
+    pub(crate) friction: L,
+}
+
+impl<L: Lane> Contacts<L> {
+    pub(crate) fn none(token: L::Token) -> Self {
+        let zero = L::splat(token, L::Scalar::default());
+        let contact = Contact {
+            point: 0,
+            y: [[zero; CHAIN]; 3],
+            missing: [zero; 3],
+            step: zero,
+            soft: zero,
+            grip: [zero; 3],
+            impulse: [zero; 3],
+        };
+        Self {
+            list: [contact; POINTS],
+            of_limb: [(0, 0); LIMBS],
+            reach: Reach::new(zero),
+        }
+    }
+
+    /// Finds the points that touch, and how they move and yield.
+    #[inline(always)]
+    pub(crate) fn find(
+        &mut self,
+        touch: &Touch<'_, L>,
+        walk: &Walk<L>,
+        factor: Factor<'_, L>,
+        block: &Block<L::Scalar>,
+        velocity: &[L; DEGREES],
+    ) {
+        let mut count = 0;
+        for limb in 0..LIMBS {
+            let first = count;
+            count = if limb < 2 {
+                self.find_limb::<BASE, 6>(limb, first, touch, walk, factor, block, velocity)
+            } else {
+                self.find_limb::<TRUNK, 5>(limb, first, touch, walk, factor, block, velocity)
+            };
+            self.of_limb[limb] = (first, count);
+        }
+    }
+
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a part of `find`, split off only for its constants"
+    )]
+    #[inline(always)]
+    fn find_limb<const PREFIX: usize, const COUNT: usize>(
+        &mut self,
+        limb: usize,
+        first: usize,
+        touch: &Touch<'_, L>,
+        walk: &Walk<L>,
+        factor: Factor<'_, L>,
+        block: &Block<L::Scalar>,
+        velocity: &[L; DEGREES],
+    ) -> usize {
+        let place =
+            |axis: usize| -> L { block.state[row::POSITION + axis].get(touch.token, touch.lane) };
+        let root = Vec3::new(place(0), place(1), place(2));
+        let zero = touch.dt.lit(0.0);
+        let mut count = first;
+        let mut reached = usize::MAX;
+        let (begin, end) = touch.tree.of_limb[limb];
+        for &point in &touch.tree.order[begin..end] {
+            let at = walk.points[point];
+            let below = match touch.ground {
+                Ground::Plane => None,
+                Ground::Heights(heights) => Some(heights.below(root.add(at))),
+            };
+            let distance = match &below {
+                None => root.z + at.z,
+                Some(below) => below.distance,
+            };
+            if !zero.any(distance.less(zero)) {
+                continue;
+            }
+            let body = POINT_TABLE[point].body;
+            if reached != body {
+                reached = body;
+                let moved = POINT_TABLE[point].chain().1;
+                self.reach
+                    .fill::<PREFIX, COUNT>(limb, moved, walk, factor, zero);
+            }
+            let contact = &mut self.list[count];
+            count += 1;
+            contact.point = point;
+            let base = Vec3::new(velocity[0], velocity[1], velocity[2]);
+            let spin = walk.velocities[body];
+            let mut now = spin.turn.cross_add(at, spin.shift.add(base));
+            let mut frame = None;
+            if let Some(below) = below {
+                let [n, s, t] = below.frame;
+                now = Vec3::new(s.dot(now), t.dot(now), n.dot(now));
+                frame = Some(below.frame);
+            }
+            self.reach.at(at, frame, &mut contact.y);
+            contact.meet(touch, block, distance, [now.z, now.x, now.y]);
+        }
+        count
+    }
+
+    /// Finds the impulses: ζ begins with what the other forces did and ends with the contacts in it.
+    #[inline(always)]
+    pub(crate) fn solve(&mut self, friction: L, sweeps: usize, x: &mut [L; DEGREES]) {
+        for sweep in 0..=sweeps {
+            for limb in 0..LIMBS {
+                let (first, end) = self.of_limb[limb];
+                if first == end {
+                    continue;
+                }
+                let contacts = &mut self.list[first..end];
+                // The first time round only brings in the impulses of the last step.
+                let begin = sweep == 0;
+                if limb < 2 {
+                    relax::visit::<L, BASE, 6>(contacts, limb, begin, friction, x);
+                } else {
+                    relax::visit::<L, TRUNK, 5>(contacts, limb, begin, friction, x);
+                }
+            }
+        }
+    }
+
+    /// Keeps the impulses for the next step, and tells the normal ones of each sole.
+    #[inline(always)]
+    pub(crate) fn keep(&self, touch: &Touch<'_, L>, block: &mut Block<L::Scalar>) -> [L; 2] {
+        let zero = touch.dt.lit(0.0);
+        for row in &mut block.state[row::IMPULSE..] {
+            row.set(touch.lane, zero);
+        }
+        let mut soles = [zero; 2];
+        for contact in &self.list[..self.of_limb[LIMBS - 1].1] {
+            for axis in 0..3 {
+                block.state[row::IMPULSE + 3 * contact.point + axis]
+                    .set(touch.lane, contact.impulse[axis]);
+            }
+            if contact.point < SOLE_POINTS {
+                let foot = contact.point / 4;
+                soles[foot] = soles[foot] + contact.impulse[0];
+            }
+        }
+        soles
+    }
+}
+
+impl<L: Lane> Contact<L> {
+    /// What the contact wants and how it yields; `now` is the point's velocity along its axes.
+    #[inline(always)]
+    fn meet(&mut self, touch: &Touch<'_, L>, block: &Block<L::Scalar>, distance: L, now: [L; 3]) {
+        let (zero, one) = (touch.dt.lit(0.0), touch.dt.lit(1.0));
+        let touching = distance.less(zero);
+        let y = &self.y;
+        let (mut normal, mut first, mut mixed, mut second) = (zero, zero, zero, zero);
+        for i in 0..CHAIN {
+            normal = y[0][i].mul_add(y[0][i], normal);
+            first = y[1][i].mul_add(y[1][i], first);
+            mixed = y[1][i].mul_add(y[2][i], mixed);
+            second = y[2][i].mul_add(y[2][i], second);
+        }
+        let depth = (-distance * distance.lit(1.0 / WIDTH)).max(zero).min(one);
+        let impedance = depth.mul_add(
+            distance.lit(IMPEDANCE[1] - IMPEDANCE[0]),
+            distance.lit(IMPEDANCE[0]),
+        );
+        // Stiffness and damping of MuJoCo's reference, with a damping ratio of 1.
+        let b = touch.dt * distance.lit(2.0 / (IMPEDANCE[1] * TIME_CONSTANT));
+        let k = touch.dt * distance.lit(1.0 / (IMPEDANCE[1] * TIME_CONSTANT).powi(2));
+        let wanted = k.neg_mul_add(distance, now[0]) / k.mul_add(touch.dt, b + one);
+        self.soft = normal * (one - impedance) / impedance;
+        self.step = (one / (normal + self.soft)).select(touching, zero);
+        self.missing = [now[0] - wanted, now[1], now[2]];
+        let inverse = one / mixed.neg_mul_add(mixed, first * second);
+        let inverse = inverse.select(touching, zero);
+        self.grip = [second * inverse, -(mixed * inverse), first * inverse];
+        for axis in 0..3 {
+            let row = row::IMPULSE + 3 * self.point + axis;
+            let before: L = block.state[row].get(touch.token, touch.lane);
+            self.impulse[axis] = before.select(touching, zero);
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! Many G1 robots per instruction: the dynamics of one known tree, sixteen robots to a register.
+//!
+//! Separate, and pure, because this is mechanics: it knows the robot's tables and nothing of tasks,
+//! observations or learning. It owns no clock, no thread and no file. rapier simulates any scene, one
+//! robot at a time, with dense algebra; here the tree is known and the same for every robot, so that
+//! no branch depends on a robot and every operation does sixteen at once.
+//!
+//! | subject | file |
+//! | --- | --- |
+//! | robots by number: state in and out, advance | [`robots`] |
+//! | what acts in the joints | [`drive`] |
+//! | the ground | [`ground`] |
+//! | the tree, contact points | [`tree`] |
+//! | rows of sixteen numbers | [`block`] |
+//! | one step | `step` |
+//! | bias forces and the mass matrix | `kinematics` |
+//! | LᵀDL along the tree | `factor` |
+//! | contacts | `contact` |
+//! | vectors, rotations, inertias | `spatial` |
+//! | numbers of many robots | [`lane`] |
+#![forbid(unsafe_code)]
+#![expect(
+    clippy::needless_range_loop,
+    clippy::manual_memcpy,
+    clippy::reversed_empty_ranges,
+    reason = "loops of known length over arrays stay in registers; iterators and copies made of calls do not"
+)]
+
+pub mod block;
+mod contact;
+pub mod drive;
+mod factor;
+pub mod ground;
+mod kinematics;
+pub mod lane;
+pub mod robots;
+mod spatial;
+mod step;
+pub mod tree;
+
+pub use block::Build;
+pub use drive::Motors;
+pub use ground::{Ground, Heights};
+pub use robots::{Effort, Reference, Robots, Saved, Solver};

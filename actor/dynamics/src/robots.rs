@@ -1,0 +1,292 @@
+//! Many robots: the face of this crate.
+//!
+//! Separate because callers think of robot 37, while the solver thinks of lane 5 of block 2.
+
+use crate::block::{Block, Build, LANES, Row, row};
+use crate::drive::Motors;
+use crate::ground::Ground;
+use crate::lane::{Packed, Real};
+use crate::step::{Room, Setting, Tally, step};
+use crate::tree::Tree;
+use g1::{JOINTS, RobotState};
+use nalgebra::Vector3;
+use pulp::{Arch, Simd, WithSimd};
+use serde::{Deserialize, Serialize};
+
+/// Beyond these speeds (m/s, rad/s) a state is taken for a blown-up one.
+const SPEED_LIMIT: f32 = 1_000.0;
+
+/// How steps are taken.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solver {
+    /// Length of a physics step, s.
+    pub dt: f32,
+    /// Gauss–Seidel sweeps over the contacts.
+    pub sweeps: usize,
+    /// The motors.
+    pub motors: Motors<f32>,
+    /// The ground.
+    pub ground: Ground,
+}
+
+/// What a control step took and felt, per robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Effort {
+    /// Positive mechanical work of the motors, J.
+    pub energy: f32,
+    /// Vertical force on the left and the right sole, mean over the step, N.
+    pub foot_forces: [f32; 2],
+}
+
+/// Robots that are stepped together. A robot's numbers never depend on its neighbours, on the
+/// machine's vectors, or on its place.
+#[derive(Clone)]
+pub struct Robots {
+    solver: Solver,
+    tree: Tree<f32>,
+    arch: Arch,
+    blocks: Vec<Block<f32>>,
+    targets: Vec<[Row<f32>; JOINTS]>,
+    tallies: Vec<Tally<f32>>,
+    count: usize,
+}
+
+/// All that the future of [`Robots`] depends on, the solver's settings aside.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Saved {
+    count: usize,
+    blocks: Vec<Block<f32>>,
+}
+
+impl Robots {
+    /// Nominal robots, standing at rest.
+    pub fn new(solver: Solver, count: usize) -> Self {
+        Self::with_arch(solver, count, Arch::new())
+    }
+
+    /// With vectors of another width than the machine's best; the numbers are the same.
+    pub fn with_arch(solver: Solver, count: usize, arch: Arch) -> Self {
+        let blocks = count.div_ceil(LANES);
+        Self {
+            solver,
+            tree: Tree::new(),
+            arch,
+            blocks: vec![Block::new(); blocks],
+            targets: vec![[Row::default(); JOINTS]; blocks],
+            tallies: vec![Tally::default(); blocks],
+            count,
+        }
+    }
+
+    /// How many.
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// How steps are taken.
+    pub fn solver(&self) -> &Solver {
+        &self.solver
+    }
+
+    /// Puts a robot into a state; its contacts begin anew, and nothing else is left of its past.
+    pub fn set_state(&mut self, robot: usize, state: &RobotState) {
+        let (block, lane) = self.place(robot);
+        self.blocks[block].set_state(lane, state);
+    }
+
+    /// Makes a robot of something else.
+    pub fn set_build(&mut self, robot: usize, build: &Build) {
+        let (block, lane) = self.place(robot);
+        self.blocks[block].set_build(lane, build);
+    }
+
+    /// A robot's state.
+    pub fn state(&self, robot: usize) -> RobotState {
+        let (block, lane) = self.place(robot);
+        self.blocks[block].state(lane)
+    }
+
+    /// Adds to the velocity of a whole robot, world frame, m/s.
+    pub fn push(&mut self, robot: usize, change: Vector3<f32>) {
+        let (block, lane) = self.place(robot);
+        for axis in 0..3 {
+            self.blocks[block].state[row::LINEAR + axis].0[lane] += change[axis];
+        }
+    }
+
+    /// Target positions of a robot's joints, rad, until others are given.
+    pub fn set_targets(&mut self, robot: usize, targets: &[f32; JOINTS]) {
+        let (block, lane) = self.place(robot);
+        for (row, target) in self.targets[block].iter_mut().zip(targets) {
+            row.0[lane] = *target;
+        }
+    }
+
+    /// Advances all robots by `steps` physics steps toward their targets. Does not allocate.
+    pub fn advance(&mut self, steps: usize) {
+        self.arch.dispatch(Advance {
+            setting: Setting {
+                tree: &self.tree,
+                ground: &self.solver.ground,
+                motors: &self.solver.motors,
+                dt: self.solver.dt,
+                sweeps: self.solver.sweeps,
+            },
+            steps,
+            blocks: &mut self.blocks,
+            targets: &self.targets,
+            tallies: &mut self.tallies,
+        });
+    }
+
+    /// What the last [`Robots::advance`] took from a robot and felt, over its `steps`.
+    pub fn effort(&self, robot: usize, steps: usize) -> Effort {
+        let (block, lane) = self.place(robot);
+        let tally = &self.tallies[block];
+        let time = self.solver.dt * steps as f32;
+        Effort {
+            energy: tally.work.0[lane],
+            foot_forces: [0, 1].map(|foot| tally.soles[foot].0[lane] / time),
+        }
+    }
+
+    /// Whether a robot's numbers can be used: finite, and no faster than anything real.
+    pub fn is_sound(&self, robot: usize) -> bool {
+        let (block, lane) = self.place(robot);
+        let state = &self.blocks[block].state;
+        state[..row::LINEAR]
+            .iter()
+            .all(|row| row.0[lane].is_finite())
+            && state[row::LINEAR..row::JOINT]
+                .iter()
+                .all(|row| row.0[lane].abs() < SPEED_LIMIT)
+            && state[row::JOINT..row::IMPULSE]
+                .iter()
+                .all(|row| row.0[lane].is_finite())
+    }
+
+    /// Everything that the future depends on.
+    pub fn save(&self) -> Saved {
+        Saved {
+            count: self.count,
+            blocks: self.blocks.clone(),
+        }
+    }
+
+    /// Goes on from what was saved; false, and nothing changed, if that is of another number of
+    /// robots or not whole.
+    pub fn restore(&mut self, saved: Saved) -> bool {
+        let whole =
+            saved.count == self.count
+                && saved.blocks.len() == self.blocks.len()
+                && saved.blocks.iter().zip(&self.blocks).all(|(a, b)| {
+                    a.state.len() == b.state.len() && a.bodies.len() == b.bodies.len()
+                });
+        if whole {
+            self.blocks = saved.blocks;
+        }
+        whole
+    }
+
+    fn place(&self, robot: usize) -> (usize, usize) {
+        assert!(robot < self.count, "robot {robot} of {}", self.count);
+        (robot / LANES, robot % LANES)
+    }
+}
+
+/// Steps of all blocks in the machine's widest vectors.
+struct Advance<'a> {
+    setting: Setting<'a, f32>,
+    steps: usize,
+    blocks: &'a mut [Block<f32>],
+    targets: &'a [[Row<f32>; JOINTS]],
+    tallies: &'a mut [Tally<f32>],
+}
+
+impl WithSimd for Advance<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let mut room = Room::<Packed<S>>::new(simd);
+        let blocks = self.blocks.iter_mut().zip(self.targets).zip(self.tallies);
+        for ((block, targets), tally) in blocks {
+            *tally = Tally::default();
+            for lane in (0..LANES).step_by(S::F32_LANES) {
+                for _ in 0..self.steps {
+                    step::<Packed<S>>(simd, &self.setting, targets, lane, block, tally, &mut room);
+                }
+            }
+        }
+    }
+}
+
+/// One robot in double precision and with any step: what the others are compared with.
+pub struct Reference {
+    tree: Tree<f64>,
+    ground: Ground,
+    motors: Motors<f64>,
+    sweeps: usize,
+    block: Block<f64>,
+    targets: [Row<f64>; JOINTS],
+}
+
+impl Reference {
+    /// With a solver's motors and ground.
+    pub fn new(solver: &Solver, sweeps: usize) -> Self {
+        Self {
+            tree: Tree::new(),
+            ground: solver.ground.clone(),
+            motors: solver.motors.cast(),
+            sweeps,
+            block: Block::new(),
+            targets: [Row::default(); JOINTS],
+        }
+    }
+
+    /// Puts the robot into a state.
+    pub fn set_state(&mut self, state: &RobotState) {
+        self.block.set_state(0, state);
+    }
+
+    /// The robot's state.
+    pub fn state(&self) -> RobotState {
+        self.block.state(0)
+    }
+
+    /// Target positions of its joints, rad.
+    pub fn set_targets(&mut self, targets: &[f32; JOINTS]) {
+        for (row, target) in self.targets.iter_mut().zip(targets) {
+            row.0[0] = f64::of(f64::from(*target));
+        }
+    }
+
+    /// Advances by steps of `dt` seconds.
+    pub fn advance(&mut self, steps: usize, dt: f64) {
+        let setting = Setting {
+            tree: &self.tree,
+            ground: &self.ground,
+            motors: &self.motors,
+            dt,
+            sweeps: self.sweeps,
+        };
+        let mut room = Room::<f64>::new(());
+        let mut tally = Tally::default();
+        for _ in 0..steps {
+            step::<f64>(
+                (),
+                &setting,
+                &self.targets,
+                0,
+                &mut self.block,
+                &mut tally,
+                &mut room,
+            );
+        }
+    }
+}
