@@ -1,15 +1,14 @@
-//! One environment: a robot, what it is asked to do, and its own random numbers.
+//! One environment: what a robot is asked to do, and its own random numbers.
 //!
 //! Separate from the fleet because an episode's life (start, steps, pushes, new commands, end) is
-//! told here once, for one robot, while the fleet only lines robots up.
+//! told here once, for one robot, while the fleet only lines robots up. The robot itself is in its
+//! engine, beside all others ([`Bodies`]).
 
-use crate::actuator::{self, Gains};
-use crate::engine::Engine;
-use crate::model::Variation;
+use crate::actuator;
+use crate::physics::{Bodies, Exertion};
 use crate::randomization::RandomizationConfig;
 use crate::start::{self, Starts};
 use crate::task::{self, End, TaskConfig};
-use crate::world::{Exertion, World};
 use g1::{JOINTS, RobotState, observation};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -20,9 +19,6 @@ pub(crate) struct Setting {
     pub(crate) task: TaskConfig,
     pub(crate) randomization: RandomizationConfig,
     pub(crate) starts: Starts,
-    pub(crate) gains: Gains,
-    /// A world that was never stepped.
-    pub(crate) template: World,
 }
 
 /// What a step of one environment brought.
@@ -38,11 +34,10 @@ pub(crate) struct Outcome {
     pub(crate) faulty: bool,
 }
 
-/// A robot in an episode. Everything that its future depends on is in here.
+/// An episode. Everything that its future depends on is in here, the robot in its engine aside.
 #[derive(Clone, Serialize, Deserialize)]
 pub(crate) struct Environment {
     random: Pcg64Mcg,
-    world: World,
     state: RobotState,
     command: [f32; 3],
     previous_action: [f32; JOINTS],
@@ -58,10 +53,9 @@ pub(crate) struct Environment {
 
 impl Environment {
     /// At the start of its first episode. Its generator depends on nothing but the two numbers.
-    pub(crate) fn new(setting: &Setting, seed: u64, index: usize) -> Self {
+    pub(crate) fn new(setting: &Setting, bodies: &mut Bodies, seed: u64, index: usize) -> Self {
         let mut environment = Self {
             random: Pcg64Mcg::seed_from_u64(mix(mix(seed).wrapping_add(index as u64))),
-            world: setting.template.clone(),
             state: RobotState::standing(),
             command: [0.0; 3],
             previous_action: [0.0; JOINTS],
@@ -70,7 +64,7 @@ impl Environment {
             age: 0,
             steps: 0,
         };
-        environment.reset(setting);
+        environment.reset(setting, bodies, index);
         if setting.task.staggered {
             environment.age = environment
                 .random
@@ -80,7 +74,7 @@ impl Environment {
     }
 
     /// Begins a new episode.
-    fn reset(&mut self, setting: &Setting) {
+    fn reset(&mut self, setting: &Setting, bodies: &mut Bodies, index: usize) {
         let variation = setting.randomization.draw_variation(&mut self.random);
         let (state, command) = start::draw(
             &setting.starts,
@@ -88,13 +82,7 @@ impl Environment {
             &setting.task.command,
             &mut self.random,
         );
-        self.world = if variation == Variation::NOMINAL {
-            setting.template.clone()
-        } else {
-            World::from_template(&setting.template, &variation)
-        };
-        self.world.set_state(&state);
-        self.state = self.world.state();
+        self.state = bodies.begin(index, &variation, &state);
         self.command = command;
         self.previous_action = [0.0; JOINTS];
         self.command_in = Some(setting.task.command.draw_interval(&mut self.random));
@@ -103,30 +91,36 @@ impl Environment {
         self.steps = 0;
     }
 
-    /// One control step. After it an ended episode has to be left by [`Environment::proceed`].
-    pub(crate) fn step(
+    /// Says what the coming control step acts with; false if the action cannot be used.
+    pub(crate) fn act(
         &mut self,
         setting: &Setting,
-        engine: &mut Engine,
+        bodies: &mut Bodies,
+        index: usize,
         action: &[f32; JOINTS],
-    ) -> Outcome {
+    ) -> bool {
         self.steps += 1;
         self.age += 1;
         if action.iter().any(|a| !a.is_finite()) {
-            return self.broken();
+            return false;
         }
         if count_down(&mut self.push_in) {
             let push = setting.randomization.draw_push(&mut self.random);
-            self.world.push(push);
+            bodies.push(index, push);
             self.push_in = setting.randomization.draw_push_interval(&mut self.random);
         }
-        let targets = actuator::targets(action);
-        let exertion = self.world.control_step(engine, &setting.gains, &targets);
-        if !self.world.is_sound() {
+        bodies.set_targets(index, &actuator::targets(action));
+        self.previous_action = *action;
+        true
+    }
+
+    /// Looks at what a control step brought. After it an ended episode has to be left by
+    /// [`Environment::proceed`].
+    pub(crate) fn judge(&mut self, setting: &Setting, bodies: &Bodies, index: usize) -> Outcome {
+        if !bodies.is_sound(index) {
             return self.broken();
         }
-        self.state = self.world.state();
-        self.previous_action = *action;
+        self.state = bodies.state(index);
         let end = if setting.task.has_fallen(&self.state) {
             End::Fall
         } else if self.age >= setting.task.episode_steps {
@@ -137,7 +131,7 @@ impl Environment {
         Outcome {
             task_reward: setting.task.reward(&self.command, &self.state),
             tracking_error: task::tracking_error(&self.command, &self.state),
-            exertion,
+            exertion: bodies.exertion(index),
             end,
             state: self.state,
             faulty: false,
@@ -145,9 +139,15 @@ impl Environment {
     }
 
     /// Goes on after a step: into the next episode, or with a new command when its time has come.
-    pub(crate) fn proceed(&mut self, setting: &Setting, end: End) {
+    pub(crate) fn proceed(
+        &mut self,
+        setting: &Setting,
+        bodies: &mut Bodies,
+        index: usize,
+        end: End,
+    ) {
         if end != End::Running {
-            self.reset(setting);
+            self.reset(setting, bodies, index);
         } else if count_down(&mut self.command_in) {
             self.command = setting.task.command.draw(&mut self.random);
             self.command_in = Some(setting.task.command.draw_interval(&mut self.random));
@@ -180,7 +180,7 @@ impl Environment {
     }
 
     /// A step that cannot be used counts as a fall in the last sound state and pays nothing.
-    fn broken(&self) -> Outcome {
+    pub(crate) fn broken(&self) -> Outcome {
         Outcome {
             task_reward: 0.0,
             tracking_error: task::tracking_error(&self.command, &self.state),
@@ -189,11 +189,6 @@ impl Environment {
             state: self.state,
             faulty: true,
         }
-    }
-
-    #[cfg(test)]
-    pub(crate) fn world_mut(&mut self) -> &mut World {
-        &mut self.world
     }
 }
 

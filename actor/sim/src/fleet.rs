@@ -5,13 +5,11 @@
 
 use crate::actuator::Gains;
 use crate::config::{self, Invalid};
-use crate::engine::Engine;
 use crate::env::{Environment, Setting};
-use crate::model::Variation;
+use crate::physics::{Bodies, Physics, SavedBodies};
 use crate::randomization::RandomizationConfig;
 use crate::start::Starts;
 use crate::task::{End, TaskConfig};
-use crate::world::World;
 use g1::{ACTION, FEATURES, OBSERVATION, RobotState, observation};
 use serde::{Deserialize, Serialize};
 
@@ -37,6 +35,14 @@ pub enum SimError {
         found: usize,
         /// Environments of this fleet.
         expected: usize,
+    },
+    /// The snapshot is of the other physics engine.
+    #[error(
+        "the snapshot is not of this fleet's physics, {expected:?}; continue it with the task.physics that it began with"
+    )]
+    Engine {
+        /// Engine of this fleet.
+        expected: Physics,
     },
 }
 
@@ -65,8 +71,10 @@ pub struct StepOut<'a> {
 /// seed, its index and its actions only.
 pub struct Fleet {
     setting: Setting,
-    engine: Engine,
+    bodies: Bodies,
     environments: Vec<Environment>,
+    /// Whether the action of this step could be used.
+    acted: Vec<bool>,
     observations: Vec<f32>,
     features: Vec<f32>,
     faults: u64,
@@ -75,6 +83,7 @@ pub struct Fleet {
 /// What a snapshot holds: all that a continuation depends on, configuration aside.
 #[derive(Serialize, Deserialize)]
 struct Snapshot<E, F> {
+    bodies: SavedBodies,
     environments: E,
     observations: F,
     features: F,
@@ -122,15 +131,15 @@ impl Fleet {
             task: task.clone(),
             randomization: randomization.clone(),
             starts,
-            gains,
-            template: World::new(&Variation::NOMINAL),
         };
+        let mut bodies = Bodies::new(task.physics, &gains, environments);
         let mut fleet = Self {
             environments: (0..environments)
-                .map(|index| Environment::new(&setting, seed, index))
+                .map(|index| Environment::new(&setting, &mut bodies, seed, index))
                 .collect(),
             setting,
-            engine: Engine::new(),
+            bodies,
+            acted: vec![true; environments],
             observations: vec![0.0; environments * OBSERVATION],
             features: vec![0.0; environments * FEATURES],
             faults: 0,
@@ -196,7 +205,16 @@ impl Fleet {
         let actions = actions.as_chunks::<ACTION>().0;
         for (i, action) in actions.iter().enumerate() {
             let environment = &mut self.environments[i];
-            let outcome = environment.step(&self.setting, &mut self.engine, action);
+            self.acted[i] = environment.act(&self.setting, &mut self.bodies, i, action);
+        }
+        self.bodies.advance();
+        for i in 0..n {
+            let environment = &mut self.environments[i];
+            let outcome = if self.acted[i] {
+                environment.judge(&self.setting, &self.bodies, i)
+            } else {
+                environment.broken()
+            };
             self.faults += u64::from(outcome.faulty);
             out.task_rewards[i] = outcome.task_reward;
             out.energies[i] = outcome.exertion.energy;
@@ -215,7 +233,7 @@ impl Fleet {
                     &mut out.timeout_observations[i * OBSERVATION..][..OBSERVATION],
                 );
             }
-            environment.proceed(&self.setting, outcome.end);
+            environment.proceed(&self.setting, &mut self.bodies, i, outcome.end);
             self.look(i);
         }
     }
@@ -223,6 +241,7 @@ impl Fleet {
     /// Everything that the future depends on, configuration aside.
     pub fn save(&self) -> Vec<u8> {
         let snapshot = Snapshot {
+            bodies: self.bodies.save(),
             environments: &self.environments,
             observations: &self.observations,
             features: &self.features,
@@ -246,6 +265,11 @@ impl Fleet {
             && snapshot.features.len() == found * FEATURES;
         if found != expected || !whole {
             return Err(SimError::Count { found, expected });
+        }
+        if !self.bodies.restore(snapshot.bodies) {
+            return Err(SimError::Engine {
+                expected: self.setting.task.physics,
+            });
         }
         self.environments = snapshot.environments;
         self.observations = snapshot.observations;

@@ -1,5 +1,5 @@
-//! The task as an environment: Unitree G1 robots on a flat floor in rapier, at 200 Hz, asked to
-//! follow velocity commands at 50 Hz.
+//! The task as an environment: Unitree G1 robots on a flat floor, in rapier or in the batched solver,
+//! at 200 Hz, asked to follow velocity commands at 50 Hz.
 //!
 //! Separate, and pure, because learning must not care what simulates: this is the only crate that
 //! sees rapier. It owns no clock, no thread and no file; the same seed gives the same bits.
@@ -14,6 +14,7 @@
 //! | where episodes begin | [`start`] |
 //! | domain randomisation (Table I) | [`randomization`] |
 //! | motors: position control, torque limits, energy (III-F) | [`actuator`] |
+//! | the two engines behind one seam | [`physics`] |
 //! | a robot in rapier, state in and out | [`world`], [`model`] |
 //! | rapier's settings | [`engine`] |
 #![forbid(unsafe_code)]
@@ -25,6 +26,7 @@ pub mod engine;
 mod env;
 pub mod fleet;
 pub mod model;
+pub mod physics;
 pub mod randomization;
 pub mod rows;
 pub mod start;
@@ -37,6 +39,7 @@ pub use config::Invalid;
 pub use engine::Engine;
 pub use fleet::{Fleet, SimError, StepOut};
 pub use model::Variation;
+pub use physics::Physics;
 pub use randomization::RandomizationConfig;
 pub use rows::StepRows;
 pub use start::{StartConfig, Starts};

@@ -13,6 +13,7 @@ use std::str::FromStr;
 use anyhow::{Context, Result};
 use serde_json::{Value, json};
 
+use crate::engine::Engine;
 use crate::failure::usage;
 use crate::place::Place;
 use episodes::{Conditions, Outcome};
@@ -44,6 +45,9 @@ pub(crate) struct Evaluate {
     /// Begin in frames of the reference motion instead of standing
     #[arg(long)]
     from_reference: bool,
+    /// Engine that judges, whatever the policy was trained in
+    #[arg(long, value_enum, default_value_t = Engine::Rapier)]
+    physics: Engine,
     /// Seed of the episodes
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -82,7 +86,8 @@ impl Evaluate {
         if !(1..=4_096).contains(&episodes) {
             return Err(usage(format!("--episodes {episodes}: give 1 to 4096")));
         }
-        let subject = Subject::open(&self.place, &self.run)?;
+        let mut subject = Subject::open(&self.place, &self.run)?;
+        subject.task.physics = self.physics.into();
         let commands: &[Command] = match self.commands.as_slice() {
             [] => &DEFAULT_COMMANDS,
             given => given,

@@ -8,6 +8,7 @@ mod actor;
 mod bench;
 mod child;
 mod console;
+mod engine;
 mod evaluate;
 mod failure;
 mod figures;

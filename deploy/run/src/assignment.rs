@@ -12,7 +12,11 @@ pub(crate) struct Assignment {
     pub(crate) value: Value,
 }
 
-/// Parses one assignment. A key without a dot is one of `[run]`: `seed=7` means `run.seed=7`.
+/// Keys that are asked for so often that they go without their section.
+const SHORT: [(&str, &str); 1] = [("physics", "task")];
+
+/// Parses one assignment. A key without a dot is one of `[run]`: `seed=7` means `run.seed=7`; or one
+/// of the few of `SHORT`: `physics=batched` means `task.physics=batched`.
 pub(crate) fn parse(text: &str) -> Result<Assignment, String> {
     let Some((key, value)) = text.split_once('=') else {
         return Err("expected key=value, as in ppo.epochs=4".to_owned());
@@ -25,7 +29,9 @@ pub(crate) fn parse(text: &str) -> Result<Assignment, String> {
     }
     let value = parse_value(value.trim())?;
     if path.len() == 1 && !value.is_table() {
-        path.insert(0, "run".to_owned());
+        let of_another = SHORT.iter().find(|(key, _)| *key == path[0]);
+        let section = of_another.map_or("run", |(_, section)| section);
+        path.insert(0, section.to_owned());
     }
     Ok(Assignment { path, value })
 }

@@ -2,11 +2,14 @@
 
 use super::*;
 use crate::command::CommandConfig;
+use crate::model::Variation;
 use crate::rows::StepRows;
 use crate::start::StartConfig;
 use g1::JOINTS;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+
+const ENGINES: [Physics; 2] = [Physics::Rapier, Physics::Batched];
 
 /// What no step writes.
 const UNTOUCHED: f32 = -77.0;
@@ -66,9 +69,18 @@ fn eventful() -> (TaskConfig, RandomizationConfig) {
     (task, randomization)
 }
 
+fn eventful_in(physics: Physics) -> (TaskConfig, RandomizationConfig) {
+    let (task, randomization) = eventful();
+    (TaskConfig { physics, ..task }, randomization)
+}
+
 #[test]
 fn same_seed_same_bits_whoever_else_is_in_the_fleet() {
-    let (task, randomization) = eventful();
+    ENGINES.into_iter().for_each(same_bits);
+}
+
+fn same_bits(physics: Physics) {
+    let (task, randomization) = eventful_in(physics);
     let mut five = fleet(&task, &randomization, 5, 11);
     let mut two = fleet(&task, &randomization, 2, 11);
     let mut other = fleet(&task, &randomization, 2, 12);
@@ -94,7 +106,11 @@ fn same_seed_same_bits_whoever_else_is_in_the_fleet() {
 
 #[test]
 fn a_restored_fleet_continues_bit_by_bit_across_resets() {
-    let (task, randomization) = eventful();
+    ENGINES.into_iter().for_each(continues);
+}
+
+fn continues(physics: Physics) {
+    let (task, randomization) = eventful_in(physics);
     let mut original = fleet(&task, &randomization, 3, 5);
     let mut actions = Actions::new(2);
     for _ in 0..33 {
@@ -133,6 +149,11 @@ fn bytes_that_do_not_fit_are_refused_and_change_nothing() {
         two.restore(&before[..100]),
         Err(SimError::Snapshot { bytes: 100, .. })
     ));
+    assert_eq!(two.save(), before);
+    let (task, randomization) = eventful_in(Physics::Batched);
+    let other = fleet(&task, &randomization, 2, 1);
+    let error = two.restore(&other.save()).unwrap_err();
+    assert!(error.to_string().contains("task.physics"), "{error}");
     assert_eq!(two.save(), before);
 }
 
@@ -363,7 +384,11 @@ fn pushes_come_at_their_time() {
 
 #[test]
 fn broken_numbers_reset_and_never_leave() {
-    let (task, randomization) = eventful();
+    ENGINES.into_iter().for_each(resets_what_broke);
+}
+
+fn resets_what_broke(physics: Physics) {
+    let (task, randomization) = eventful_in(physics);
     let mut fleet = fleet(&task, &randomization, 2, 1);
     let mut asked = vec![0.0; 2 * ACTION];
     asked[5] = f32::NAN;
@@ -374,7 +399,7 @@ fn broken_numbers_reset_and_never_leave() {
     asked[5] = 0.0;
     let mut state = *fleet.state(1);
     state.joint_velocities[2] = f32::INFINITY;
-    fleet.environments[1].world_mut().set_state(&state);
+    let _ = fleet.bodies.begin(1, &Variation::NOMINAL, &state);
     let broken = step(&mut fleet, &asked);
     assert_eq!(broken.ends[1], 1.0);
     assert_eq!(fleet.faults(), 2);
@@ -390,7 +415,11 @@ fn broken_numbers_reset_and_never_leave() {
 
 #[test]
 fn violent_actions_leave_finite_numbers() {
-    let (task, randomization) = eventful();
+    ENGINES.into_iter().for_each(stays_finite);
+}
+
+fn stays_finite(physics: Physics) {
+    let (task, randomization) = eventful_in(physics);
     let mut fleet = fleet(&task, &randomization, 4, 13);
     let mut actions = Actions::new(5);
     for size in [1.0, 10.0, 1e3, 1e6] {

@@ -10,7 +10,9 @@ use policy::{Policy, Shape};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde_json::{Value, json};
-use sim::{Fleet, RandomizationConfig, Starts, StepRows, TaskConfig};
+use sim::{Fleet, Physics, RandomizationConfig, Starts, StepRows, TaskConfig};
+
+use crate::engine::Engine;
 
 /// Standard deviation of the benchmark's actions; 0.25 rad per unit, as a policy in training moves.
 const EXPLORATION: f32 = 0.5;
@@ -29,6 +31,9 @@ pub(crate) struct SimBench {
     /// Widths of the policy's hidden layers
     #[arg(long, value_delimiter = ',', default_values_t = [256, 128, 64])]
     hidden: Vec<usize>,
+    /// What moves the robots: rapier, or the batched solver
+    #[arg(long, value_enum, default_value_t = Engine::Rapier)]
+    physics: Engine,
     /// Simulate without the domain randomisation of Table I
     #[arg(long)]
     plain: bool,
@@ -64,6 +69,7 @@ impl SimBench {
             "cpu_seconds": physics.cpu,
             "resets": physics.resets,
             "faults": physics.faults,
+            "physics": Physics::from(self.physics),
             "environments": self.environments,
             "hidden": self.hidden,
             "randomization": !self.plain,
@@ -98,7 +104,10 @@ impl SimBench {
         };
         let n = self.environments;
         let mut fleet = Fleet::new(
-            &TaskConfig::default(),
+            &TaskConfig {
+                physics: self.physics.into(),
+                ..TaskConfig::default()
+            },
             &randomization,
             Starts::default(),
             n,
@@ -211,6 +220,7 @@ mod tests {
             seconds: 0.05,
             environments: 2,
             hidden: vec![8],
+            physics: Engine::Batched,
             plain: false,
             seed: 1,
         };

@@ -1,0 +1,116 @@
+//! The seam between the task and what simulates it: robots by number in one of two engines.
+//!
+//! Separate because the task, its rewards and resets must be the same code whatever moves the
+//! robots. rapier is the default and the judge; the batched solver of `dynamics` is the fast lane.
+
+mod batched;
+mod worlds;
+
+use crate::actuator::Gains;
+use crate::model::Variation;
+use batched::Batched;
+use g1::{JOINTS, RobotState};
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+use worlds::Worlds;
+
+pub use crate::world::Exertion;
+
+/// Which engine moves the robots.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Physics {
+    /// rapier: a world per robot. The judge of every result.
+    #[default]
+    Rapier,
+    /// The solver for this one robot that steps sixteen per instruction.
+    Batched,
+}
+
+/// The robots of a fleet in their engine.
+pub(crate) enum Bodies {
+    Rapier(Box<Worlds>),
+    Batched(Box<Batched>),
+}
+
+/// What a snapshot holds of the engine.
+#[derive(Serialize, Deserialize)]
+pub(crate) enum SavedBodies {
+    Rapier(Vec<crate::world::World>),
+    Batched(dynamics::Saved),
+}
+
+// A macro only so that every call of the seam is a line.
+macro_rules! both {
+    ($self:ident, $bodies:ident => $call:expr) => {
+        match $self {
+            Self::Rapier($bodies) => $call,
+            Self::Batched($bodies) => $call,
+        }
+    };
+}
+
+impl Bodies {
+    pub(crate) fn new(physics: Physics, gains: &Gains, count: usize) -> Self {
+        match physics {
+            Physics::Rapier => Self::Rapier(Box::new(Worlds::new(gains, count))),
+            Physics::Batched => Self::Batched(Box::new(Batched::new(gains, count))),
+        }
+    }
+
+    /// A fresh robot in a state, nothing left of the one before; the state as the engine holds it.
+    pub(crate) fn begin(
+        &mut self,
+        robot: usize,
+        variation: &Variation,
+        state: &RobotState,
+    ) -> RobotState {
+        both!(self, bodies => bodies.begin(robot, variation, state));
+        self.state(robot)
+    }
+
+    /// Adds to the velocity of a whole robot, world frame, m/s.
+    pub(crate) fn push(&mut self, robot: usize, change: Vector3<f32>) {
+        both!(self, bodies => bodies.push(robot, change));
+    }
+
+    /// Target positions of the coming control step, rad.
+    pub(crate) fn set_targets(&mut self, robot: usize, targets: &[f32; JOINTS]) {
+        both!(self, bodies => bodies.set_targets(robot, targets));
+    }
+
+    /// One control step of all robots.
+    pub(crate) fn advance(&mut self) {
+        both!(self, bodies => bodies.advance());
+    }
+
+    /// What the last control step took from a robot and felt.
+    pub(crate) fn exertion(&self, robot: usize) -> Exertion {
+        both!(self, bodies => bodies.exertion(robot))
+    }
+
+    pub(crate) fn state(&self, robot: usize) -> RobotState {
+        both!(self, bodies => bodies.state(robot))
+    }
+
+    /// Whether a robot's state can be used.
+    pub(crate) fn is_sound(&self, robot: usize) -> bool {
+        both!(self, bodies => bodies.is_sound(robot))
+    }
+
+    pub(crate) fn save(&self) -> SavedBodies {
+        match self {
+            Self::Rapier(worlds) => SavedBodies::Rapier(worlds.save()),
+            Self::Batched(robots) => SavedBodies::Batched(robots.save()),
+        }
+    }
+
+    /// False, and nothing changed, if what was saved is of the other engine or of another number.
+    pub(crate) fn restore(&mut self, saved: SavedBodies) -> bool {
+        match (self, saved) {
+            (Self::Rapier(worlds), SavedBodies::Rapier(saved)) => worlds.restore(saved),
+            (Self::Batched(robots), SavedBodies::Batched(saved)) => robots.restore(saved),
+            _ => false,
+        }
+    }
+}

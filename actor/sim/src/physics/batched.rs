@@ -1,0 +1,79 @@
+//! The batched solver's side of the seam.
+
+use super::Exertion;
+use crate::actuator::Gains;
+use crate::model::Variation;
+use crate::world::{PHYSICS_STEP, SUBSTEPS};
+use dynamics::{Build, Ground, Motors, Robots, Saved, Solver};
+use g1::{JOINTS, RobotState};
+use nalgebra::Vector3;
+
+/// Sweeps over the contacts of a step: 4 are enough to learn from, twice as many change little.
+const SWEEPS: usize = 4;
+
+/// Robots in the batched solver.
+pub(crate) struct Batched(Robots);
+
+impl Batched {
+    pub(crate) fn new(gains: &Gains, count: usize) -> Self {
+        let solver = Solver {
+            dt: PHYSICS_STEP,
+            sweeps: SWEEPS,
+            motors: Motors {
+                stiffness: gains.stiffness,
+                damping: gains.damping,
+                effort: gains.effort,
+            },
+            ground: Ground::Plane,
+        };
+        Self(Robots::new(solver, count))
+    }
+
+    pub(crate) fn begin(&mut self, robot: usize, variation: &Variation, state: &RobotState) {
+        self.0.set_build(
+            robot,
+            &Build {
+                torso_mass: variation.torso_mass,
+                torso_com: variation.torso_com,
+                friction: variation.friction,
+            },
+        );
+        self.0.set_state(robot, state);
+    }
+
+    pub(crate) fn push(&mut self, robot: usize, change: Vector3<f32>) {
+        self.0.push(robot, change);
+    }
+
+    pub(crate) fn set_targets(&mut self, robot: usize, targets: &[f32; JOINTS]) {
+        self.0.set_targets(robot, targets);
+    }
+
+    pub(crate) fn advance(&mut self) {
+        self.0.advance(SUBSTEPS);
+    }
+
+    pub(crate) fn exertion(&self, robot: usize) -> Exertion {
+        let effort = self.0.effort(robot, SUBSTEPS);
+        Exertion {
+            energy: effort.energy,
+            foot_forces: effort.foot_forces,
+        }
+    }
+
+    pub(crate) fn state(&self, robot: usize) -> RobotState {
+        self.0.state(robot)
+    }
+
+    pub(crate) fn is_sound(&self, robot: usize) -> bool {
+        self.0.is_sound(robot)
+    }
+
+    pub(crate) fn save(&self) -> Saved {
+        self.0.save()
+    }
+
+    pub(crate) fn restore(&mut self, saved: Saved) -> bool {
+        self.0.restore(saved)
+    }
+}

@@ -1,0 +1,84 @@
+//! rapier's side of the seam: a world per robot, one after another.
+
+use super::Exertion;
+use crate::actuator::Gains;
+use crate::engine::Engine;
+use crate::model::Variation;
+use crate::world::World;
+use g1::{DEFAULT_POSE, JOINTS, RobotState};
+use nalgebra::Vector3;
+
+/// Robots in rapier.
+pub(crate) struct Worlds {
+    engine: Engine,
+    gains: Gains,
+    /// A world that was never stepped.
+    template: World,
+    worlds: Vec<World>,
+    targets: Vec<[f32; JOINTS]>,
+    exertions: Vec<Exertion>,
+}
+
+impl Worlds {
+    pub(crate) fn new(gains: &Gains, count: usize) -> Self {
+        let template = World::new(&Variation::NOMINAL);
+        Self {
+            engine: Engine::new(),
+            gains: gains.clone(),
+            worlds: vec![template.clone(); count],
+            template,
+            targets: vec![DEFAULT_POSE; count],
+            exertions: vec![Exertion::default(); count],
+        }
+    }
+
+    pub(crate) fn begin(&mut self, robot: usize, variation: &Variation, state: &RobotState) {
+        // A used world remembers its contacts; a copy of a fresh one has the bits of a fresh one.
+        let mut world = if *variation == Variation::NOMINAL {
+            self.template.clone()
+        } else {
+            World::from_template(&self.template, variation)
+        };
+        world.set_state(state);
+        self.worlds[robot] = world;
+    }
+
+    pub(crate) fn push(&mut self, robot: usize, change: Vector3<f32>) {
+        self.worlds[robot].push(change);
+    }
+
+    pub(crate) fn set_targets(&mut self, robot: usize, targets: &[f32; JOINTS]) {
+        self.targets[robot] = *targets;
+    }
+
+    pub(crate) fn advance(&mut self) {
+        let robots = self.worlds.iter_mut().zip(&self.targets);
+        for ((world, targets), exertion) in robots.zip(&mut self.exertions) {
+            *exertion = world.control_step(&mut self.engine, &self.gains, targets);
+        }
+    }
+
+    pub(crate) fn exertion(&self, robot: usize) -> Exertion {
+        self.exertions[robot]
+    }
+
+    pub(crate) fn state(&self, robot: usize) -> RobotState {
+        self.worlds[robot].state()
+    }
+
+    pub(crate) fn is_sound(&self, robot: usize) -> bool {
+        self.worlds[robot].is_sound()
+    }
+
+    pub(crate) fn save(&self) -> Vec<World> {
+        self.worlds.clone()
+    }
+
+    pub(crate) fn restore(&mut self, saved: Vec<World>) -> bool {
+        let whole = saved.len() == self.worlds.len();
+        if whole {
+            self.worlds = saved;
+        }
+        whole
+    }
+}
