@@ -11,6 +11,7 @@ use crate::start::{self, Starts};
 use crate::task::{self, End, TaskConfig};
 use crate::world::{Exertion, World};
 use g1::{JOINTS, RobotState, observation};
+use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
@@ -189,6 +190,11 @@ impl Environment {
             state: self.state,
             faulty: true,
         }
+    }
+
+    /// Pushes the robot before its next step: a jump of its velocity, world frame, m/s.
+    pub(crate) fn push(&mut self, change: Vector3<f32>) {
+        self.world.push(change);
     }
 
     #[cfg(test)]

@@ -11,8 +11,9 @@ use crate::model::Variation;
 use crate::randomization::RandomizationConfig;
 use crate::start::Starts;
 use crate::task::{End, TaskConfig};
-use crate::world::World;
+use crate::world::{Exertion, World};
 use g1::{ACTION, FEATURES, OBSERVATION, RobotState, observation};
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Why a fleet cannot be built or restored.
@@ -69,7 +70,19 @@ pub struct Fleet {
     environments: Vec<Environment>,
     observations: Vec<f32>,
     features: Vec<f32>,
+    /// What each environment's last step led to; of no influence on the future, and in no snapshot.
+    last: Vec<LastStep>,
     faults: u64,
+}
+
+/// What one step of one environment led to, for those who judge a gait.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LastStep {
+    /// The robot after the step, before a new episode began; of a step that could not be used, the
+    /// last sound state.
+    pub state: RobotState,
+    /// What the step took; zeros before the first step.
+    pub exertion: Exertion,
 }
 
 /// What a snapshot holds: all that a continuation depends on, configuration aside.
@@ -133,8 +146,10 @@ impl Fleet {
             engine: Engine::new(),
             observations: vec![0.0; environments * OBSERVATION],
             features: vec![0.0; environments * FEATURES],
+            last: Vec::new(),
             faults: 0,
         };
+        fleet.forget_last_steps();
         for index in 0..environments {
             fleet.look(index);
         }
@@ -178,6 +193,16 @@ impl Fleet {
             .copy_from_slice(&command);
     }
 
+    /// Pushes an environment's robot before its next step: a jump of its velocity, world frame, m/s.
+    pub fn push(&mut self, environment: usize, change: Vector3<f32>) {
+        self.environments[environment].push(change);
+    }
+
+    /// What an environment's last step led to, also where an episode ended with it.
+    pub fn last_step(&self, environment: usize) -> &LastStep {
+        &self.last[environment]
+    }
+
     /// Steps thrown away so far because an action or a state was not finite.
     pub fn faults(&self) -> u64 {
         self.faults
@@ -198,6 +223,10 @@ impl Fleet {
             let environment = &mut self.environments[i];
             let outcome = environment.step(&self.setting, &mut self.engine, action);
             self.faults += u64::from(outcome.faulty);
+            self.last[i] = LastStep {
+                state: outcome.state,
+                exertion: outcome.exertion,
+            };
             out.task_rewards[i] = outcome.task_reward;
             out.energies[i] = outcome.exertion.energy;
             out.tracking_errors[i] = outcome.tracking_error;
@@ -251,7 +280,16 @@ impl Fleet {
         self.observations = snapshot.observations;
         self.features = snapshot.features;
         self.faults = snapshot.faults;
+        self.forget_last_steps();
         Ok(())
+    }
+
+    fn forget_last_steps(&mut self) {
+        let none = |environment: &Environment| LastStep {
+            state: *environment.state(),
+            exertion: Exertion::default(),
+        };
+        self.last = self.environments.iter().map(none).collect();
     }
 
     /// Writes what is seen of an environment now.
