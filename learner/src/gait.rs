@@ -1,29 +1,214 @@
 //! Gait measures of a batch: the one place that knows how its rows follow each other in time.
 
-use amp::Batch;
-use g1::FEATURES;
-use g1::gait::Gait;
+use amp::{Batch, Segment};
+use g1::gait::{Feet, Gait, Pace, Signs, Verdict, speed_use};
+use g1::observation::{COMMAND, GRAVITY, state_of};
+use g1::{FEATURES, OBSERVATION};
+use nalgebra::Vector3;
+use tracing::{info, warn};
 
-/// Measures of all robots of a batch together.
-pub(crate) fn of(batch: &Batch) -> Gait {
-    let mut gait = Gait::default();
-    let mut row = 0;
-    for segment in batch.segments() {
+/// Steps per second.
+const CONTROL_HZ: f64 = 50.0;
+
+/// Where the feet are takes forward kinematics: one robot in so many is enough for a mean.
+const FEET_OF_EVERY: usize = 4;
+
+/// Iterations that are judged together in the log: a verdict of a single batch flickers.
+const JUDGED_TOGETHER: u64 = 10;
+
+/// All measures of some robots' steps together.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Measures {
+    pub(crate) gait: Gait,
+    pub(crate) feet: Feet,
+    pub(crate) pace: Pace,
+    steps: f64,
+    speed_use: f64,
+    seconds_upright: f64,
+    lives: f64,
+}
+
+impl Measures {
+    /// Of all robots of a batch, with the mean length of its episodes that ended (steps).
+    pub(crate) fn of(batch: &Batch, episode_length: Option<f64>) -> Self {
+        let mut measures = Self::default();
+        let mut first = 0;
+        for segment in batch.segments() {
+            measures.add(batch, first, *segment);
+            first += segment.rows();
+        }
+        if let Some(steps) = episode_length {
+            measures.seconds_upright = steps / CONTROL_HZ;
+            measures.lives = 1.0;
+        }
+        measures
+    }
+
+    /// Adds a rollout whose rows begin at `first`.
+    fn add(&mut self, batch: &Batch, first: usize, segment: Segment) {
         let robots = segment.environments;
         for step in 0..segment.steps {
             for robot in 0..robots {
-                let forces =
-                    |row: usize| [batch.foot_forces[2 * row], batch.foot_forces[2 * row + 1]];
+                let row = first + step * robots + robot;
                 let began = step == 0 || batch.ends[row - robots] != 0.0;
-                gait.add(
-                    &batch.next_features[row * FEATURES..][..FEATURES],
-                    forces(row),
-                    (!began).then(|| forces(row - robots)),
-                );
-                row += 1;
-                let _ = robot;
+                let before = (!began).then(|| forces(batch, row - robots));
+                let features = &batch.next_features[row * FEATURES..][..FEATURES];
+                let seen = &batch.observations[row * OBSERVATION..][..OBSERVATION];
+                let command = std::array::from_fn(|i| seen[COMMAND.start + i]);
+                self.gait.add(features, forces(batch, row), before);
+                // Upright robots: base and heading frame differ by the small tilt.
+                self.pace.add(command, [features[1], features[2]]);
+                self.steps += 1.0;
+                self.speed_use += f64::from(speed_use(features));
+                let goes_on = step + 1 < segment.steps && batch.ends[row] == 0.0;
+                if robot % FEET_OF_EVERY == 0 && goes_on {
+                    let state = state_of(features, gravity(batch, row + robots));
+                    self.feet.add(&state, forces(batch, row), before);
+                }
             }
         }
     }
-    gait
+
+    fn merge(&mut self, other: &Self) {
+        self.gait.merge(&other.gait);
+        self.feet.merge(&other.feet);
+        self.pace.merge(&other.pace);
+        self.steps += other.steps;
+        self.speed_use += other.speed_use;
+        self.seconds_upright += other.seconds_upright;
+        self.lives += other.lives;
+    }
+
+    /// Mean of the greatest joint speed of a robot at the end of a step, as a share of its limit.
+    pub(crate) fn speed_use(&self) -> f64 {
+        self.speed_use / self.steps
+    }
+
+    pub(crate) fn stride_rate(&self) -> Option<f64> {
+        self.gait.stride_rate(CONTROL_HZ)
+    }
+
+    pub(crate) fn slip_per_stride(&self) -> Option<f64> {
+        self.feet.slip_per_stride(CONTROL_HZ)
+    }
+
+    /// What the gait is.
+    pub(crate) fn verdict(&self) -> Verdict {
+        let upright = (self.lives > 0.0).then(|| self.seconds_upright / self.lives);
+        Verdict::of(&Signs::of(&self.gait, &self.pace, upright, CONTROL_HZ))
+    }
+}
+
+/// Left and right foot force in a row, N.
+fn forces(batch: &Batch, row: usize) -> [f32; 2] {
+    [batch.foot_forces[2 * row], batch.foot_forces[2 * row + 1]]
+}
+
+/// Direction of gravity in the base frame as it was observed: the features do not have it. With
+/// sensor noise it is off by up to 0.05, which moves feet by centimetres but not on average.
+fn gravity(batch: &Batch, row: usize) -> Vector3<f32> {
+    Vector3::from_row_slice(&batch.observations[row * OBSERVATION..][GRAVITY])
+}
+
+/// Says in the log what the gait has become.
+#[derive(Debug, Default)]
+pub(crate) struct Watch {
+    measures: Measures,
+    iterations: u64,
+    said: Option<&'static str>,
+}
+
+impl Watch {
+    /// Takes one more iteration; every ten are judged together, and a change is said.
+    pub(crate) fn take(&mut self, iteration: u64, measures: &Measures) {
+        self.measures.merge(measures);
+        self.iterations += 1;
+        if self.iterations < JUDGED_TOGETHER {
+            return;
+        }
+        let gait = self.measures.verdict();
+        if self.said != Some(gait.name()) {
+            match gait {
+                // Every run begins with falls: only what lasts and looks like success is a warning.
+                Verdict::Fall(_) => info!(iteration, "{gait}"),
+                _ if gait.is_good() => info!(iteration, "{gait}"),
+                _ => warn!(iteration, "{gait}"),
+            }
+            self.said = Some(gait.name());
+        }
+        self.measures = Measures::default();
+        self.iterations = 0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two robots of which each step's forces and hip angles are given, standing high.
+    fn batch(steps: &[[([f32; 2], f32); 2]]) -> Batch {
+        let mut batch = Batch::default();
+        batch.resize(1, steps.len(), 2);
+        for (step, robots) in steps.iter().enumerate() {
+            for (robot, (forces, hip)) in robots.iter().enumerate() {
+                let row = 2 * step + robot;
+                batch.foot_forces[2 * row..][..2].copy_from_slice(forces);
+                let features = &mut batch.next_features[row * FEATURES..][..FEATURES];
+                (features[0], features[1]) = (0.79, 0.5);
+                (features[7], features[13]) = (*hip, -*hip);
+                let seen = &mut batch.observations[row * OBSERVATION..][..OBSERVATION];
+                seen[GRAVITY].copy_from_slice(&[0.0, 0.0, -1.0]);
+                seen[COMMAND.start] = 0.5;
+            }
+        }
+        batch
+    }
+
+    const LEFT: [f32; 2] = [300.0, 0.0];
+    const RIGHT: [f32; 2] = [0.0, 300.0];
+
+    #[test]
+    fn robots_follow_themselves_and_not_their_neighbours() {
+        let walk = batch(&[
+            [(LEFT, 0.3), (RIGHT, -0.3)],
+            [(RIGHT, -0.3), (LEFT, 0.3)],
+            [(LEFT, 0.3), (RIGHT, -0.3)],
+        ]);
+        let measures = Measures::of(&walk, Some(1000.0));
+        // Each robot lands once in each of steps 2 and 3: 4 landings / 2 feet / 6 rows · 50 Hz.
+        assert!((measures.stride_rate().unwrap() - 50.0 / 3.0).abs() < 1e-9);
+        assert_eq!(measures.gait.contact_correlation(), Some(-1.0));
+        assert_eq!(measures.verdict(), Verdict::Walk);
+        // Robot 0 alone, steps 1 and 2, after which the next gravity is known; one landing, on
+        // sliding feet: 2 · 0.5 m/s · 20 ms.
+        assert!((measures.slip_per_stride().unwrap() - 0.02).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_new_episode_does_not_land() {
+        let mut walk = batch(&[[(LEFT, 0.3), (LEFT, 0.3)], [(RIGHT, -0.3), (RIGHT, -0.3)]]);
+        assert!(Measures::of(&walk, None).stride_rate() > Some(0.0));
+        walk.ends[0] = 1.0;
+        walk.ends[1] = 1.0;
+        assert_eq!(Measures::of(&walk, None).stride_rate(), Some(0.0));
+    }
+
+    #[test]
+    fn ten_iterations_are_judged_together() {
+        let walk = Measures::of(&batch(&[[(LEFT, 0.3), (RIGHT, -0.3)]; 2]), Some(1000.0));
+        let fall = Measures::of(&batch(&[[(LEFT, 0.3), (RIGHT, -0.3)]; 2]), Some(30.0));
+        let mut watch = Watch::default();
+        for iteration in 1..=9 {
+            watch.take(iteration, &fall);
+        }
+        assert_eq!(watch.said, None);
+        watch.take(10, &fall);
+        assert_eq!(watch.said, Some("fall"));
+        // One long life among nine short ones: (9·0.6 s + 20 s) / 10 = 2.54 s is long enough.
+        watch.take(11, &walk);
+        for iteration in 12..=20 {
+            watch.take(iteration, &fall);
+        }
+        assert_eq!(watch.said, Some("walk"));
+    }
 }

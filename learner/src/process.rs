@@ -10,7 +10,7 @@ use run::Folder;
 use tracing::{error, info, warn};
 
 use crate::config::LearnerConfig;
-use crate::gait;
+use crate::gait::{Measures, Watch};
 use crate::guidance::Guide;
 use crate::intake::Gathered;
 use crate::lines::Lines;
@@ -33,6 +33,7 @@ pub fn run(run_dir: &Path, resume: bool) -> Result<()> {
     let mut learner = Loop {
         started: Instant::now(),
         refusals: 0,
+        watch: Watch::default(),
         folder,
         config,
     };
@@ -92,6 +93,7 @@ struct Loop {
     config: LearnerConfig,
     started: Instant,
     refusals: u64,
+    watch: Watch,
 }
 
 /// One turn of the loop, from its broadcast on.
@@ -145,9 +147,11 @@ impl Loop {
         match learned {
             Ok(report) => {
                 self.refusals = 0;
+                let measures = Measures::of(batch, report.episode_length);
+                self.watch.take(state.iteration, &measures);
                 lines
                     .metrics
-                    .append(&self.record(lines, state, batch, guide, report, span))?;
+                    .append(&self.record(lines, state, &measures, guide, report, span))?;
                 lines.report(state)
             }
             Err(problem) => {
@@ -167,7 +171,7 @@ impl Loop {
         &self,
         lines: &Lines,
         state: &State,
-        batch: &Batch,
+        measures: &Measures,
         guide: &Guide,
         report: &IterationReport,
         span: &Span,
@@ -181,7 +185,7 @@ impl Loop {
             task_weight: 1.0 - report.style_weight,
             learning: record::figures(report),
             decision: DecisionFigures::of(guide, lines.guidance.is_away()),
-            gait: gait::of(batch).into(),
+            gait: measures.into(),
             traffic: Traffic::of(
                 gathered,
                 lines.intake.ledger().totals(),
@@ -190,7 +194,7 @@ impl Loop {
             timing: Timing {
                 seconds: self.seconds(state),
                 iteration_seconds,
-                samples_per_second: batch.rows() as f64 / iteration_seconds,
+                samples_per_second: report.rows as f64 / iteration_seconds,
                 gather_seconds: span.gather_seconds,
                 learn_seconds: iteration_seconds - span.gather_seconds,
                 learning: report.seconds,

@@ -4,11 +4,11 @@
 //! compared line by line.
 
 use amp::{IterationReport, Seconds};
-use g1::gait::Gait;
 use protocol::Totals;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
+use crate::gait::Measures;
 use crate::guidance::Guide;
 use crate::intake::Gathered;
 
@@ -87,19 +87,44 @@ impl DecisionFigures {
 /// Is it a walk, a hop, a stand?
 #[derive(Serialize)]
 pub(crate) struct GaitFigures {
+    /// In words, as in "hop: hips in phase (+0.94)".
+    gait: String,
     hip_correlation: Option<f64>,
+    contact_correlation: Option<f64>,
     stride_rate_hz: Option<f64>,
     duty_factor: Option<f64>,
     flight_share: Option<f64>,
+    pelvis_height: Option<f64>,
+    foot_clearance: Option<f64>,
+    foot_slip: Option<f64>,
+    slip_per_stride: Option<f64>,
+    step_symmetry: Option<f64>,
+    joint_speed_use: f64,
+    commanded_speed: Option<f64>,
+    speed: Option<f64>,
 }
 
-impl From<Gait> for GaitFigures {
-    fn from(gait: Gait) -> Self {
+impl From<&Measures> for GaitFigures {
+    fn from(measures: &Measures) -> Self {
+        let Measures {
+            gait, feet, pace, ..
+        } = measures;
+        let (commanded_speed, speed) = pace.speeds().unzip();
         Self {
+            gait: measures.verdict().to_string(),
             hip_correlation: gait.hip_correlation(),
-            stride_rate_hz: gait.stride_rate(50.0),
+            contact_correlation: gait.contact_correlation(),
+            stride_rate_hz: measures.stride_rate(),
             duty_factor: gait.duty_factor(),
             flight_share: gait.flight_share(),
+            pelvis_height: gait.pelvis_height(),
+            foot_clearance: feet.clearance(),
+            foot_slip: feet.slip_speed(),
+            slip_per_stride: measures.slip_per_stride(),
+            step_symmetry: feet.step_symmetry(),
+            joint_speed_use: measures.speed_use(),
+            commanded_speed,
+            speed,
         }
     }
 }

@@ -41,4 +41,4 @@ pub mod tree;
 pub use block::Build;
 pub use drive::Motors;
 pub use ground::{Ground, Heights};
-pub use robots::{Effort, Reference, Robots, Saved, Solver};
+pub use robots::{Effort, Peaks, Reference, Robots, Saved, Solver};

@@ -38,6 +38,15 @@ pub struct Effort {
     pub foot_forces: [f32; 2],
 }
 
+/// Greatest torque and speed of every joint in a control step, without sign.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peaks {
+    /// N·m.
+    pub torques: [f32; JOINTS],
+    /// rad/s.
+    pub speeds: [f32; JOINTS],
+}
+
 /// Robots that are stepped together. A robot's numbers never depend on its neighbours, on the
 /// machine's vectors, or on its place.
 #[derive(Clone)]
@@ -152,6 +161,16 @@ impl Robots {
         Effort {
             energy: tally.work.0[lane],
             foot_forces: [0, 1].map(|foot| tally.soles[foot].0[lane] / time),
+        }
+    }
+
+    /// Greatest torques and speeds of a robot's joints during the last [`Robots::advance`].
+    pub fn peaks(&self, robot: usize) -> Peaks {
+        let (block, lane) = self.place(robot);
+        let tally = &self.tallies[block];
+        Peaks {
+            torques: tally.torques.map(|row| row.0[lane]),
+            speeds: tally.speeds.map(|row| row.0[lane]),
         }
     }
 

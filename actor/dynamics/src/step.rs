@@ -33,6 +33,10 @@ pub(crate) struct Tally<T> {
     pub(crate) work: Row<T>,
     /// Normal impulses on the soles, left and right, N·s.
     pub(crate) soles: [Row<T>; 2],
+    /// Greatest torque of every joint without sign, N·m.
+    pub(crate) torques: [Row<T>; JOINTS],
+    /// Greatest speed of every joint without sign, rad/s.
+    pub(crate) speeds: [Row<T>; JOINTS],
 }
 
 /// Room for the intermediate results of a step.
@@ -151,7 +155,15 @@ pub(crate) fn step<L: Lane>(
     }
     for joint in 0..JOINTS {
         let speed = velocity[BASE + joint];
-        power = power + (torques[joint].at(speed) * speed).max(zero);
+        let torque = torques[joint].at(speed);
+        power = power + (torque * speed).max(zero);
+        for (peak, now) in [
+            (&mut tally.torques[joint], torque),
+            (&mut tally.speeds[joint], speed),
+        ] {
+            let before: L = peak.get(token, lane);
+            peak.set(lane, before.max(now.abs()));
+        }
     }
     let before: L = tally.work.get(token, lane);
     tally.work.set(lane, power.mul_add(dt, before));

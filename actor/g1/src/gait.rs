@@ -2,9 +2,28 @@
 //!
 //! Separate because training and evaluation must mean the same by them. They are sums over
 //! transitions, so robots, rollouts and actors add up in any grouping.
+//!
+//! | subject | file |
+//! | --- | --- |
+//! | hips, contacts, strides: from features and foot forces | here |
+//! | clearance, slip, step lengths: from states | `feet` |
+//! | use of the motors' limits | `motors` |
+//! | how fast, and how fast it was asked to be | `pace` |
+//! | all of it in a word | `verdict` |
+
+mod feet;
+mod motors;
+mod pace;
+mod verdict;
+
+pub use feet::Feet;
+pub use motors::{MotorUse, speed_use};
+pub use pace::Pace;
+pub use verdict::{Signs, Verdict};
 
 use crate::FEATURES;
 use crate::observation::FEATURE_JOINT_POSITION;
+use crate::observation::HEIGHT;
 
 /// Hip pitch of the left and the right leg within the features.
 const LEFT_HIP_PITCH: usize = FEATURE_JOINT_POSITION.start;
@@ -22,7 +41,8 @@ pub struct Gait {
     left_squared: f64,
     right_squared: f64,
     product: f64,
-    feet_down: f64,
+    height: f64,
+    feet_down: [f64; 2],
     in_flight: f64,
     touchdowns: f64,
 }
@@ -42,15 +62,30 @@ impl Gait {
         self.left_squared += left * left;
         self.right_squared += right * right;
         self.product += left * right;
-        let down = forces.map(|force| force > CONTACT_FORCE);
-        self.feet_down += f64::from(u8::from(down[0]) + u8::from(down[1]));
-        self.in_flight += f64::from(u8::from(!down[0] && !down[1]));
-        if let Some(before) = before {
-            for foot in 0..2 {
-                let lands = down[foot] && before[foot] <= CONTACT_FORCE;
-                self.touchdowns += f64::from(u8::from(lands));
-            }
+        self.height += f64::from(features[HEIGHT]);
+        let down = in_contact(forces);
+        let landed = landings(forces, before);
+        for foot in 0..2 {
+            self.feet_down[foot] += f64::from(u8::from(down[foot]));
+            self.touchdowns += f64::from(u8::from(landed[foot]));
         }
+        self.in_flight += f64::from(u8::from(!down[0] && !down[1]));
+    }
+
+    /// Adds the steps of another sum.
+    pub fn merge(&mut self, other: &Self) {
+        self.steps += other.steps;
+        self.left += other.left;
+        self.right += other.right;
+        self.left_squared += other.left_squared;
+        self.right_squared += other.right_squared;
+        self.product += other.product;
+        self.height += other.height;
+        for foot in 0..2 {
+            self.feet_down[foot] += other.feet_down[foot];
+        }
+        self.in_flight += other.in_flight;
+        self.touchdowns += other.touchdowns;
     }
 
     /// Correlation of left and right hip pitch: −1 a walk, +1 a hop; `None` if a hip never moved.
@@ -65,7 +100,23 @@ impl Gait {
 
     /// Share of time that a foot is on the ground, mean of both feet.
     pub fn duty_factor(&self) -> Option<f64> {
-        (self.steps > 0.0).then(|| self.feet_down / (2.0 * self.steps))
+        let down: f64 = self.feet_down.iter().sum();
+        (self.steps > 0.0).then(|| down / (2.0 * self.steps))
+    }
+
+    /// Correlation of left and right contact: −1 feet that alternate, +1 feet that land and lift
+    /// together, whatever the hips do; `None` if a foot never lifts or never lands.
+    pub fn contact_correlation(&self) -> Option<f64> {
+        let [left, right] = self.feet_down.map(|down| down / self.steps);
+        // Steps with both feet down, by counting: n = L + R − both + neither.
+        let both = left + right + self.in_flight / self.steps - 1.0;
+        let variance = left * (1.0 - left) * right * (1.0 - right);
+        (variance > 0.0).then(|| (both - left * right) / variance.sqrt())
+    }
+
+    /// Mean height of the pelvis, m.
+    pub fn pelvis_height(&self) -> Option<f64> {
+        (self.steps > 0.0).then(|| self.height / self.steps)
     }
 
     /// Share of time with no foot on the ground.
@@ -77,6 +128,17 @@ impl Gait {
     pub fn stride_rate(&self, control_hz: f64) -> Option<f64> {
         (self.steps > 0.0).then(|| self.touchdowns / 2.0 / self.steps * control_hz)
     }
+}
+
+/// Which foot carries the robot.
+fn in_contact(forces: [f32; 2]) -> [bool; 2] {
+    forces.map(|force| force > CONTACT_FORCE)
+}
+
+/// Which foot came down in a step; none where nothing is known of the step before.
+fn landings(forces: [f32; 2], before: Option<[f32; 2]>) -> [bool; 2] {
+    let (now, before) = (in_contact(forces), in_contact(before.unwrap_or(forces)));
+    [now[0] && !before[0], now[1] && !before[1]]
 }
 
 #[cfg(test)]
@@ -116,5 +178,50 @@ mod tests {
         assert_eq!(gait.duty_factor(), Some(0.5)); // (2 + 1 + 0 + 1) / (2 · 4)
         assert_eq!(gait.flight_share(), Some(0.25)); // 1 of 4
         assert_eq!(gait.stride_rate(50.0), Some(6.25)); // one landing / 2 feet / 4 steps · 50 Hz
+    }
+
+    #[test]
+    fn contacts_that_alternate_are_told_from_contacts_that_agree() {
+        let of = |forces: &[[f32; 2]]| {
+            let mut gait = Gait::default();
+            for &now in forces {
+                gait.add(&features(0.0, 0.0), now, None);
+            }
+            gait.contact_correlation()
+        };
+        let (up, down) = (0.0, 300.0);
+        let close = |got: Option<f64>, expected: f64| (got.unwrap() - expected).abs() < 1e-9;
+        assert!(close(of(&[[down, up], [up, down]]), -1.0));
+        assert!(close(of(&[[down, down], [up, up]]), 1.0));
+        // Walking with double support: L R both, each foot down in 2 of 3.
+        // P(both) = 1/3, so (1/3 − 4/9) / (2/3·1/3) = −1/2.
+        assert!(close(of(&[[down, up], [up, down], [down, down]]), -0.5));
+        assert_eq!(of(&[[down, down], [down, up]]), None); // the left never lifts
+    }
+
+    #[test]
+    fn sums_of_parts_are_the_sum_of_all() {
+        let steps = [
+            (0.3, -0.3, [300.0, 0.0]),
+            (0.1, 0.2, [0.0, 0.0]),
+            (-0.2, 0.4, [0.0, 310.0]),
+        ];
+        let sum = |range: std::ops::Range<usize>| {
+            let mut gait = Gait::default();
+            for i in range {
+                let (left, right, forces) = steps[i];
+                let before = i.checked_sub(1).map(|before| steps[before].2);
+                gait.add(&features(left, right), forces, before);
+            }
+            gait
+        };
+        let mut parts = sum(0..1);
+        parts.merge(&sum(1..3));
+        let whole = sum(0..3);
+        assert_eq!(parts.duty_factor(), whole.duty_factor());
+        assert_eq!(parts.stride_rate(50.0), whole.stride_rate(50.0));
+        let gap = parts.hip_correlation().unwrap() - whole.hip_correlation().unwrap();
+        assert!(gap.abs() < 1e-12);
+        assert_eq!(parts.contact_correlation(), whole.contact_correlation());
     }
 }

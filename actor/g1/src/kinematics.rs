@@ -64,6 +64,27 @@ pub fn point_jacobian<T: RealField + Copy>(
     jacobian
 }
 
+/// Velocity in the world, m/s, of a point fixed to a body; `point` is in the world, `bodies` those of
+/// `state`. What [`point_jacobian`] times the velocities would give, without the matrix.
+pub fn point_velocity(
+    bodies: &[Isometry3<f32>; BODIES],
+    state: &RobotState,
+    body: usize,
+    point: &Point3<f32>,
+) -> Vector3<f32> {
+    let arm = point - base_origin(bodies);
+    let mut velocity = state.linear_velocity + state.angular_velocity.cross(&arm);
+    let mut link = body;
+    while let Some(parent) = LINK_TABLE[link].parent {
+        let joint = link - 1;
+        let axis = bodies[link].rotation * vector(JOINT_TABLE[joint].axis);
+        let arm = point.coords - bodies[link].translation.vector;
+        velocity += axis.cross(&arm) * state.joint_velocities[joint];
+        link = parent;
+    }
+    velocity
+}
+
 /// The four corners of a foot's sole in the world; `foot` is [`LEFT_FOOT`] or [`RIGHT_FOOT`].
 pub fn sole_points<T: RealField + Copy>(
     bodies: &[Isometry3<T>; BODIES],
@@ -268,6 +289,35 @@ mod tests {
                     assert!((jacobian[(row + 3, dof)] - spin[row]).abs() < 1e-7);
                 }
             }
+        }
+    }
+
+    #[test]
+    fn point_velocity_is_the_jacobian_times_the_velocities() {
+        let state = RobotState {
+            orientation: UnitQuaternion::from_euler_angles(0.2, -0.3, 0.9),
+            linear_velocity: Vector3::new(0.4, -0.2, 0.1),
+            angular_velocity: Vector3::new(-0.3, 0.5, 0.7),
+            joint_positions: GOLDEN.map(|q| q as f32),
+            joint_velocities: std::array::from_fn(|i| 0.3 * i as f32 - 2.0),
+            ..RobotState::standing()
+        };
+        let bodies = forward_state(&state);
+        let point = Point3::new(0.12, 0.03, -0.035);
+        let mut velocities = nalgebra::SVector::<f32, DOFS>::zeros();
+        velocities
+            .fixed_rows_mut::<3>(0)
+            .copy_from(&state.linear_velocity);
+        velocities
+            .fixed_rows_mut::<3>(3)
+            .copy_from(&state.angular_velocity);
+        for (i, speed) in state.joint_velocities.iter().enumerate() {
+            velocities[6 + i] = *speed;
+        }
+        for body in [LEFT_FOOT, RIGHT_FOOT, 23] {
+            let expected = point_jacobian(&bodies, body, &point) * velocities;
+            let got = point_velocity(&bodies, &state, body, &(bodies[body] * point));
+            assert!((got - expected.fixed_rows::<3>(0)).norm() < 1e-4, "{body}");
         }
     }
 }

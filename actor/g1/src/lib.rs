@@ -8,7 +8,7 @@
 //! | --- | --- |
 //! | masses and inertias of the 24 bodies, the foot box | [`links`] |
 //! | the 23 joints: frames, limits, gains, default pose, the joint order | [`joints`] |
-//! | measures of a gait: hip correlation, duty factor, flight | [`gait`] |
+//! | measures of a gait: hips, contacts, feet, motors, and a verdict | [`gait`] |
 //! | a state of the robot and its frames | [`state`] |
 //! | what the policy and the discriminator see | [`observation`] |
 //! | left–right reflection | [`mirror`] |

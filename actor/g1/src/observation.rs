@@ -4,6 +4,8 @@
 //! a difference in layout would be the discriminator's easiest clue.
 
 use crate::{DEFAULT_POSE, FEATURES, JOINTS, OBSERVATION, RobotState};
+use nalgebra::{UnitQuaternion, Vector3};
+use std::f32::consts::PI;
 use std::ops::Range;
 
 /// Pelvis height, m.
@@ -60,6 +62,33 @@ pub fn features(state: &RobotState, out: &mut [f32]) {
     out[FEATURE_JOINT_VELOCITY].copy_from_slice(&state.joint_velocities);
 }
 
+/// The state that [`features`] were written of, given the direction of gravity in the base frame:
+/// over the world's origin and with a heading that means nothing, for neither is in the features.
+///
+/// # Panics
+/// If `features` is not 53 long.
+pub fn state_of(features: &[f32], gravity: Vector3<f32>) -> RobotState {
+    assert_eq!(
+        features.len(),
+        FEATURES,
+        "the features of a step are 53 numbers"
+    );
+    // Upside down, any half turn will do.
+    let orientation = UnitQuaternion::rotation_between(&gravity, &-Vector3::z())
+        .unwrap_or_else(|| UnitQuaternion::from_euler_angles(PI, 0.0, 0.0));
+    let in_world =
+        |numbers: Range<usize>| orientation * Vector3::from_row_slice(&features[numbers]);
+    let joints = |numbers: Range<usize>| std::array::from_fn(|i| features[numbers.start + i]);
+    RobotState {
+        position: Vector3::new(0.0, 0.0, features[HEIGHT]),
+        orientation,
+        linear_velocity: in_world(LINEAR_VELOCITY),
+        angular_velocity: in_world(ANGULAR_VELOCITY),
+        joint_positions: joints(FEATURE_JOINT_POSITION),
+        joint_velocities: joints(FEATURE_JOINT_VELOCITY),
+    }
+}
+
 fn write_base(state: &RobotState, out: &mut [f32]) {
     out[HEIGHT] = state.position.z;
     out[LINEAR_VELOCITY].copy_from_slice(state.velocity_in_base().as_slice());
@@ -69,7 +98,6 @@ fn write_base(state: &RobotState, out: &mut [f32]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{UnitQuaternion, Vector3};
     use std::f32::consts::FRAC_PI_2;
 
     /// Facing world y, moving along it at 2 m/s, turning left at 0.5 rad/s, joint i at i/10, speed i.
@@ -131,5 +159,18 @@ mod tests {
         expected[HEIGHT] = 0.784_202_2;
         expected[GRAVITY.end - 1] = -1.0;
         assert_close(&out, &expected);
+    }
+
+    #[test]
+    fn a_state_comes_back_but_for_place_and_heading() {
+        let mut state = moving();
+        state.orientation = UnitQuaternion::from_euler_angles(0.2, -0.3, 0.9);
+        let mut seen = [f32::NAN; FEATURES];
+        features(&state, &mut seen);
+        let back = state_of(&seen, state.projected_gravity());
+        assert!((back.projected_gravity() - state.projected_gravity()).norm() < 1e-6);
+        let mut again = [f32::NAN; FEATURES];
+        features(&back, &mut again);
+        assert_close(&again, &seen);
     }
 }

@@ -106,6 +106,23 @@ pub(crate) fn positive_work(torques: &Torques, multibody: &Multibody, dt: f32) -
         * dt
 }
 
+/// |τ| as a share of the robot's effort limit and |q̇| as a share of its velocity limit, per joint.
+pub(crate) fn use_of_limits(
+    torques: &Torques,
+    multibody: &Multibody,
+) -> ([f32; JOINTS], [f32; JOINTS]) {
+    let velocity = multibody.generalized_velocity();
+    let speed = |i: usize| velocity[BASE_DEGREES + i];
+    let limits = |i: usize| {
+        let joint = &JOINT_TABLE[i];
+        (joint.effort as f32, joint.velocity_limit as f32)
+    };
+    (
+        std::array::from_fn(|i| torques.of(i, speed(i)).abs() / limits(i).0),
+        std::array::from_fn(|i| speed(i).abs() / limits(i).1),
+    )
+}
+
 impl Torques {
     /// The torque that acted on a joint whose speed after the step is `speed`, N·m.
     pub(crate) fn of(&self, joint: usize, speed: f32) -> f32 {
@@ -194,6 +211,31 @@ mod tests {
             (effective - expected).abs() < 0.02 * expected,
             "{effective} {expected}"
         );
+    }
+
+    #[test]
+    fn limits_are_used_in_shares() {
+        let mut world = hanging();
+        let mut state = world.state();
+        state.joint_velocities[12] = 3.2; // waist, of at most 32 rad/s
+        world.set_state(&state);
+        let mut gains = Gains::of_the_robot();
+        gains.stiffness[12] = 0.0;
+        gains.damping = [0.0; JOINTS]; // the torque below is the one at the step's start
+        let mut goal = DEFAULT_POSE;
+        goal[3] += 0.278; // knee: 150·0.278 = 41.7 N·m, 0.3 of 139
+        goal[16] += 2.0; // elbow: 80 asked, all of its 25 given
+        let mut engine = Engine::new();
+        let step = world.physics_step(&mut engine, &gains, &goal);
+        assert!((step.torque_use[3] - 0.3).abs() < 1e-4);
+        assert_eq!(step.torque_use[16], 1.0);
+        assert!(step.torque_use[12] < 1e-6);
+        let waist = world.state().joint_velocities[12];
+        assert!(waist > 1.0 && (step.speed_use[12] - waist / 32.0).abs() < 1e-6);
+        // A control step remembers its greatest: the knee asks for less and less on its way.
+        let whole = world.control_step(&mut engine, &gains, &goal);
+        let last = world.physics_step(&mut engine, &gains, &goal);
+        assert!(whole.torque_use[3] > last.torque_use[3]);
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! engine, beside all others ([`Bodies`]).
 
 use crate::actuator;
-use crate::physics::{Bodies, Exertion};
+use crate::physics::Bodies;
 use crate::randomization::RandomizationConfig;
 use crate::start::{self, Starts};
 use crate::task::{self, End, TaskConfig};
@@ -26,7 +26,10 @@ pub(crate) struct Setting {
 pub(crate) struct Outcome {
     pub(crate) task_reward: f32,
     pub(crate) tracking_error: f32,
-    pub(crate) exertion: Exertion,
+    /// Positive mechanical work of the motors, J.
+    pub(crate) energy: f32,
+    /// Vertical force on the left and the right sole, mean over the step, N.
+    pub(crate) foot_forces: [f32; 2],
     pub(crate) end: End,
     /// The true state after the step; of a step that broke, the last sound one.
     pub(crate) state: RobotState,
@@ -128,10 +131,12 @@ impl Environment {
         } else {
             End::Running
         };
+        let (energy, foot_forces) = bodies.work_and_forces(index);
         Outcome {
             task_reward: setting.task.reward(&self.command, &self.state),
             tracking_error: task::tracking_error(&self.command, &self.state),
-            exertion: bodies.exertion(index),
+            energy,
+            foot_forces,
             end,
             state: self.state,
             faulty: false,
@@ -184,7 +189,8 @@ impl Environment {
         Outcome {
             task_reward: 0.0,
             tracking_error: task::tracking_error(&self.command, &self.state),
-            exertion: Exertion::default(),
+            energy: 0.0,
+            foot_forces: [0.0; 2],
             end: End::Fall,
             state: self.state,
             faulty: true,

@@ -6,11 +6,12 @@
 use crate::actuator::Gains;
 use crate::config::{self, Invalid};
 use crate::env::{Environment, Setting};
-use crate::physics::{Bodies, Physics, SavedBodies};
+use crate::physics::{Bodies, Exertion, Physics, SavedBodies};
 use crate::randomization::RandomizationConfig;
 use crate::start::Starts;
 use crate::task::{End, TaskConfig};
 use g1::{ACTION, FEATURES, OBSERVATION, RobotState, observation};
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Why a fleet cannot be built or restored.
@@ -77,7 +78,20 @@ pub struct Fleet {
     acted: Vec<bool>,
     observations: Vec<f32>,
     features: Vec<f32>,
+    /// Where each environment's last step led, and whether the step could be used; of no influence
+    /// on the future, and in no snapshot.
+    last: Vec<(RobotState, bool)>,
     faults: u64,
+}
+
+/// What one step of one environment led to, for those who judge a gait.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LastStep {
+    /// The robot after the step, before a new episode began; of a step that could not be used, the
+    /// last sound state.
+    pub state: RobotState,
+    /// What the step took; zeros before the first step.
+    pub exertion: Exertion,
 }
 
 /// What a snapshot holds: all that a continuation depends on, configuration aside.
@@ -142,8 +156,10 @@ impl Fleet {
             acted: vec![true; environments],
             observations: vec![0.0; environments * OBSERVATION],
             features: vec![0.0; environments * FEATURES],
+            last: Vec::new(),
             faults: 0,
         };
+        fleet.forget_last_steps();
         for index in 0..environments {
             fleet.look(index);
         }
@@ -187,6 +203,24 @@ impl Fleet {
             .copy_from_slice(&command);
     }
 
+    /// Pushes an environment's robot before its next step: a jump of its velocity, world frame, m/s.
+    pub fn push(&mut self, environment: usize, change: Vector3<f32>) {
+        self.bodies.push(environment, change);
+    }
+
+    /// What an environment's last step led to, also where an episode ended with it.
+    pub fn last_step(&self, environment: usize) -> LastStep {
+        let (state, whole) = self.last[environment];
+        LastStep {
+            state,
+            exertion: if whole {
+                self.bodies.exertion(environment)
+            } else {
+                Exertion::default()
+            },
+        }
+    }
+
     /// Steps thrown away so far because an action or a state was not finite.
     pub fn faults(&self) -> u64 {
         self.faults
@@ -216,12 +250,13 @@ impl Fleet {
                 environment.broken()
             };
             self.faults += u64::from(outcome.faulty);
+            self.last[i] = (outcome.state, !outcome.faulty);
             out.task_rewards[i] = outcome.task_reward;
-            out.energies[i] = outcome.exertion.energy;
+            out.energies[i] = outcome.energy;
             out.tracking_errors[i] = outcome.tracking_error;
             out.ends[i] = outcome.end.code();
             out.episode_steps[i] = environment.steps() as f32;
-            out.foot_forces[2 * i..][..2].copy_from_slice(&outcome.exertion.foot_forces);
+            out.foot_forces[2 * i..][..2].copy_from_slice(&outcome.foot_forces);
             observation::features(
                 &outcome.state,
                 &mut out.next_features[i * FEATURES..][..FEATURES],
@@ -275,7 +310,13 @@ impl Fleet {
         self.observations = snapshot.observations;
         self.features = snapshot.features;
         self.faults = snapshot.faults;
+        self.forget_last_steps();
         Ok(())
+    }
+
+    fn forget_last_steps(&mut self) {
+        let of = |environment: &Environment| (*environment.state(), false);
+        self.last = self.environments.iter().map(of).collect();
     }
 
     /// Writes what is seen of an environment now.

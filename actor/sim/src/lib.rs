@@ -37,7 +37,7 @@ pub use actuator::Gains;
 pub use command::CommandConfig;
 pub use config::Invalid;
 pub use engine::Engine;
-pub use fleet::{Fleet, SimError, StepOut};
+pub use fleet::{Fleet, LastStep, SimError, StepOut};
 pub use model::Variation;
 pub use physics::Physics;
 pub use randomization::RandomizationConfig;

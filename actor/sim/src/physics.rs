@@ -84,7 +84,13 @@ impl Bodies {
         both!(self, bodies => bodies.advance());
     }
 
-    /// What the last control step took from a robot and felt.
+    /// Positive work of the motors (J) and vertical forces on the soles (N) in the last control step:
+    /// what every step asks for.
+    pub(crate) fn work_and_forces(&self, robot: usize) -> (f32, [f32; 2]) {
+        both!(self, bodies => bodies.work_and_forces(robot))
+    }
+
+    /// All that the last control step took from a robot and felt.
     pub(crate) fn exertion(&self, robot: usize) -> Exertion {
         both!(self, bodies => bodies.exertion(robot))
     }

@@ -46,6 +46,21 @@ pub struct Exertion {
     pub energy: f32,
     /// Vertical force on the left and the right sole, mean over the step, N.
     pub foot_forces: [f32; 2],
+    /// Each joint's greatest torque in the step, as a share of its effort limit.
+    pub torque_use: [f32; JOINTS],
+    /// Each joint's greatest speed in the step, as a share of its velocity limit; the physics does
+    /// not enforce that limit, so this can exceed 1.
+    pub speed_use: [f32; JOINTS],
+}
+
+impl Exertion {
+    /// Raises the greatest torques and speeds to those of another step.
+    pub(crate) fn take_greatest(&mut self, other: &Self) {
+        for i in 0..JOINTS {
+            self.torque_use[i] = self.torque_use[i].max(other.torque_use[i]);
+            self.speed_use[i] = self.speed_use[i].max(other.speed_use[i]);
+        }
+    }
 }
 
 /// A robot and its floor. Clones and snapshots continue bit by bit like the original.
@@ -143,6 +158,7 @@ impl World {
         for _ in 0..SUBSTEPS {
             let step = self.physics_step(engine, gains, targets);
             exertion.energy += step.energy;
+            exertion.take_greatest(&step);
             for (sum, force) in exertion.foot_forces.iter_mut().zip(step.foot_forces) {
                 *sum += force / SUBSTEPS as f32;
             }
@@ -175,9 +191,12 @@ impl World {
         );
         self.broken |= !engine.pipeline.quarantine().is_empty();
         let dt = engine.parameters.dt;
+        let (torque_use, speed_use) = actuator::use_of_limits(&torques, self.multibody());
         Exertion {
             energy: actuator::positive_work(&torques, self.multibody(), dt),
             foot_forces: [0, 1].map(|side| self.sole_impulse(side) / dt),
+            torque_use,
+            speed_use,
         }
     }
 

@@ -437,3 +437,38 @@ fn a_fleet_can_move_to_another_thread() {
     fn assert_send<T: Send>() {}
     assert_send::<Fleet>();
 }
+
+#[test]
+fn the_last_step_is_told_also_where_an_episode_ended() {
+    let (mut task, _) = eventful();
+    task.episode_steps = 3;
+    task.staggered = false;
+    let mut fleet = fleet(&task, &RandomizationConfig::none(), 2, 4);
+    assert_eq!(fleet.last_step(1).state, *fleet.state(1));
+    assert_eq!(fleet.last_step(1).exertion, Exertion::default());
+    let mut actions = Actions::new(4);
+    for t in 1..=3 {
+        let out = step(&mut fleet, &actions.draw(2, 1.0));
+        let last = fleet.last_step(1);
+        assert_eq!(last.exertion.energy, out.energies[1]);
+        assert_eq!(last.exertion.foot_forces, out.foot_forces[2..]);
+        let mut features = [0.0; FEATURES];
+        observation::features(&last.state, &mut features);
+        assert_eq!(features, out.next_features[FEATURES..]);
+        assert_eq!(last.state == *fleet.state(1), t < 3);
+    }
+}
+
+#[test]
+fn a_push_from_outside_moves_the_robot_that_it_is_meant_for() {
+    let (task, _) = eventful();
+    let mut pushed = fleet(&task, &RandomizationConfig::none(), 2, 6);
+    let mut left_alone = fleet(&task, &RandomizationConfig::none(), 2, 6);
+    pushed.push(0, Vector3::new(0.0, 0.5, 0.0));
+    let rest = [0.0; 2 * ACTION];
+    step(&mut pushed, &rest);
+    step(&mut left_alone, &rest);
+    let gain = pushed.state(0).linear_velocity.y - left_alone.state(0).linear_velocity.y;
+    assert!((0.3..0.6).contains(&gain), "{gain} m/s");
+    assert_eq!(pushed.state(1), left_alone.state(1));
+}

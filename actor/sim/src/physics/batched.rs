@@ -5,7 +5,7 @@ use crate::actuator::Gains;
 use crate::model::Variation;
 use crate::world::{PHYSICS_STEP, SUBSTEPS};
 use dynamics::{Build, Ground, Motors, Robots, Saved, Solver};
-use g1::{JOINTS, RobotState};
+use g1::{JOINT_TABLE, JOINTS, RobotState};
 use nalgebra::Vector3;
 
 /// Sweeps over the contacts of a step: 4 are enough to learn from, twice as many change little.
@@ -53,11 +53,22 @@ impl Batched {
         self.0.advance(SUBSTEPS);
     }
 
-    pub(crate) fn exertion(&self, robot: usize) -> Exertion {
+    pub(crate) fn work_and_forces(&self, robot: usize) -> (f32, [f32; 2]) {
         let effort = self.0.effort(robot, SUBSTEPS);
+        (effort.energy, effort.foot_forces)
+    }
+
+    pub(crate) fn exertion(&self, robot: usize) -> Exertion {
+        let (energy, foot_forces) = self.work_and_forces(robot);
+        let peaks = self.0.peaks(robot);
+        let share = |peak: f32, limit: f64| peak / limit as f32;
         Exertion {
-            energy: effort.energy,
-            foot_forces: effort.foot_forces,
+            energy,
+            foot_forces,
+            torque_use: std::array::from_fn(|i| share(peaks.torques[i], JOINT_TABLE[i].effort)),
+            speed_use: std::array::from_fn(|i| {
+                share(peaks.speeds[i], JOINT_TABLE[i].velocity_limit)
+            }),
         }
     }
 

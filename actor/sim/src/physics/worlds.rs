@@ -58,6 +58,11 @@ impl Worlds {
         }
     }
 
+    pub(crate) fn work_and_forces(&self, robot: usize) -> (f32, [f32; 2]) {
+        let exertion = &self.exertions[robot];
+        (exertion.energy, exertion.foot_forces)
+    }
+
     pub(crate) fn exertion(&self, robot: usize) -> Exertion {
         self.exertions[robot]
     }
