@@ -11,8 +11,10 @@ use sim::{Fleet, StepOut};
 /// Seconds that a rollout took, by what they were spent on.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Timing {
-    /// Stepping the robots: physics, task, observation.
+    /// Moving the robots.
     pub physics: f32,
+    /// Rewards, ends, resets and what is seen after the step.
+    pub observation: f32,
     /// Running the policy and drawing its noise.
     pub inference: f32,
 }
@@ -44,21 +46,21 @@ pub fn collect(
             step.log_probs,
         );
         let acted = Instant::now();
-        fleet.step(
-            step.actions,
-            &mut StepOut {
-                task_rewards: step.task_rewards,
-                energies: step.energies,
-                tracking_errors: step.tracking_errors,
-                ends: step.ends,
-                episode_steps: step.episode_steps,
-                next_features: step.next_features,
-                foot_forces: step.foot_forces,
-                timeout_observations: step.timeout_observations,
-            },
-        );
+        fleet.advance(step.actions);
+        let moved = Instant::now();
+        fleet.observe(&mut StepOut {
+            task_rewards: step.task_rewards,
+            energies: step.energies,
+            tracking_errors: step.tracking_errors,
+            ends: step.ends,
+            episode_steps: step.episode_steps,
+            next_features: step.next_features,
+            foot_forces: step.foot_forces,
+            timeout_observations: step.timeout_observations,
+        });
         timing.inference += (acted - started).as_secs_f32();
-        timing.physics += acted.elapsed().as_secs_f32();
+        timing.physics += (moved - acted).as_secs_f32();
+        timing.observation += moved.elapsed().as_secs_f32();
     }
     rollout
         .last_observations

@@ -84,6 +84,7 @@ pub fn run(run_dir: &Path, index: u32) -> Result<()> {
                 learner: header.learner,
                 policy_version: header.version,
                 physics_seconds: timing.physics,
+                observation_seconds: timing.observation,
                 inference_seconds: timing.inference,
                 waiting_seconds: waited.as_secs_f32(),
                 collect_seconds: started.elapsed().as_secs_f32(),

@@ -34,8 +34,11 @@ pub(crate) struct Gathered {
     pub(crate) policy_lag: f64,
     pub(crate) collect_seconds: f64,
     pub(crate) physics_seconds: f64,
+    pub(crate) observation_seconds: f64,
     pub(crate) inference_seconds: f64,
     pub(crate) waiting_seconds: f64,
+    /// Copying rollouts to their places, all together.
+    pub(crate) copy_seconds: f64,
 }
 
 /// Waits for rollouts, checks them, copies them to their places.
@@ -205,7 +208,9 @@ impl Intake {
             }
         };
         seats[place].taken = true;
+        let began = Instant::now();
         copy(rollout, batch, place);
+        gathered.copy_seconds += began.elapsed().as_secs_f64();
         gathered.count(&header, version);
         Ok(())
     }
@@ -245,6 +250,7 @@ impl Gathered {
         self.policy_lag += version.saturating_sub(header.policy_version) as f64;
         self.collect_seconds = self.collect_seconds.max(f64::from(header.collect_seconds));
         self.physics_seconds += f64::from(header.physics_seconds);
+        self.observation_seconds += f64::from(header.observation_seconds);
         self.inference_seconds += f64::from(header.inference_seconds);
         self.waiting_seconds += f64::from(header.waiting_seconds);
     }
@@ -253,6 +259,7 @@ impl Gathered {
         let rollouts = self.rollouts.max(1) as f64;
         self.policy_lag /= rollouts;
         self.physics_seconds /= rollouts;
+        self.observation_seconds /= rollouts;
         self.inference_seconds /= rollouts;
         self.waiting_seconds /= rollouts;
     }

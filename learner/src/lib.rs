@@ -7,6 +7,7 @@
 #![forbid(unsafe_code)]
 
 mod config;
+mod cores;
 mod gait;
 mod guidance;
 mod intake;

@@ -10,6 +10,7 @@ use run::Folder;
 use tracing::{error, info, warn};
 
 use crate::config::LearnerConfig;
+use crate::cores::Cores;
 use crate::gait::{Measures, Watch};
 use crate::guidance::Guide;
 use crate::intake::Gathered;
@@ -34,6 +35,7 @@ pub fn run(run_dir: &Path, resume: bool) -> Result<()> {
         started: Instant::now(),
         refusals: 0,
         watch: Watch::default(),
+        cores: Cores::default(),
         folder,
         config,
     };
@@ -46,20 +48,22 @@ pub fn run(run_dir: &Path, resume: bool) -> Result<()> {
         WeightsOrder::Collect
     };
     while !shutdown.requested() && !learner.is_complete(&state) {
-        lines.broadcast(&mut state, &learner.config, order)?;
         let began = Instant::now();
+        lines.broadcast(&mut state, &learner.config, order)?;
+        let broadcast_seconds = began.elapsed().as_secs_f64();
         let Some(gathered) = lines
             .intake
             .gather(state.iteration, &mut batch, &shutdown)?
         else {
             break;
         };
-        let gather_seconds = began.elapsed().as_secs_f64();
+        let gather_seconds = began.elapsed().as_secs_f64() - broadcast_seconds;
         let guide = lines.guidance.after(state.reported())?;
         state.remembered = lines.guidance.remember();
         let learned = state.learn(&batch, &learner.config, &guide);
         let span = Span {
             began,
+            broadcast_seconds,
             gather_seconds,
             gathered,
         };
@@ -94,11 +98,13 @@ struct Loop {
     started: Instant,
     refusals: u64,
     watch: Watch,
+    cores: Cores,
 }
 
 /// One turn of the loop, from its broadcast on.
 struct Span {
     began: Instant,
+    broadcast_seconds: f64,
     gather_seconds: f64,
     gathered: Gathered,
 }
@@ -149,9 +155,10 @@ impl Loop {
                 self.refusals = 0;
                 let measures = Measures::of(batch, report.episode_length);
                 self.watch.take(state.iteration, &measures);
-                lines
-                    .metrics
-                    .append(&self.record(lines, state, &measures, guide, report, span))?;
+                let idle_share = self.cores.idle_share();
+                let mut record = self.record(lines, state, &measures, guide, report, span);
+                record.timing.idle_share = idle_share;
+                lines.metrics.append(&record)?;
                 lines.report(state)
             }
             Err(problem) => {
@@ -196,12 +203,16 @@ impl Loop {
                 iteration_seconds,
                 samples_per_second: report.rows as f64 / iteration_seconds,
                 gather_seconds: span.gather_seconds,
-                learn_seconds: iteration_seconds - span.gather_seconds,
+                broadcast_seconds: span.broadcast_seconds,
+                copy_seconds: gathered.copy_seconds,
+                learn_seconds: iteration_seconds - span.broadcast_seconds - span.gather_seconds,
                 learning: report.seconds,
                 collect_seconds: gathered.collect_seconds,
                 physics_seconds: gathered.physics_seconds,
+                observation_seconds: gathered.observation_seconds,
                 inference_seconds: gathered.inference_seconds,
                 waiting_seconds: gathered.waiting_seconds,
+                idle_share: None,
             },
         }
     }

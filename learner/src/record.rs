@@ -163,8 +163,12 @@ pub(crate) struct Timing {
     /// This iteration, from broadcast to broadcast.
     pub(crate) iteration_seconds: f64,
     pub(crate) samples_per_second: f64,
+    /// Giving the weights to the actors, before the iteration.
+    pub(crate) broadcast_seconds: f64,
     /// Waiting for and copying rollouts.
     pub(crate) gather_seconds: f64,
+    /// Copying them alone.
+    pub(crate) copy_seconds: f64,
     /// From the batch to the new weights.
     pub(crate) learn_seconds: f64,
     /// The parts of learning.
@@ -172,6 +176,9 @@ pub(crate) struct Timing {
     /// Of the actors: the slowest rollout, and means of its parts.
     pub(crate) collect_seconds: f64,
     pub(crate) physics_seconds: f64,
+    pub(crate) observation_seconds: f64,
     pub(crate) inference_seconds: f64,
     pub(crate) waiting_seconds: f64,
+    /// Share of the machine's cores that did nothing at all; `null` where the kernel does not say.
+    pub(crate) idle_share: Option<f64>,
 }

@@ -33,8 +33,8 @@ pub struct RolloutHeader {
     pub environments: u32,
     /// T, control steps.
     pub steps: u32,
-    /// Keeps the fields after it aligned; always 0.
-    pub reserved: u32,
+    /// Wall-clock seconds spent in rewards, resets and observations.
+    pub observation_seconds: f32,
     /// Life of the actor, see [`Node::incarnation`].
     pub incarnation: u64,
     /// Rollouts that this life tried to send before this one, the lost ones included.
@@ -128,7 +128,7 @@ impl RolloutPublisher {
             actor: self.actor,
             environments: self.layout.environments as u32,
             steps: self.layout.steps as u32,
-            reserved: 0,
+            observation_seconds: 0.0,
             incarnation: self.incarnation,
             sequence: self.sequence,
             ..header

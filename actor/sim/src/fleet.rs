@@ -233,15 +233,31 @@ impl Fleet {
     /// # Panics
     /// If a slice has another length than its field says.
     pub fn step(&mut self, actions: &[f32], out: &mut StepOut<'_>) {
-        let n = self.len();
-        assert_eq!(actions.len(), n * ACTION, "actions are N·23");
-        out.check(n);
+        self.advance(actions);
+        self.observe(out);
+    }
+
+    /// The first half of a step: the robots move with their actions, N·23.
+    ///
+    /// # Panics
+    /// If there are not N·23 numbers.
+    pub fn advance(&mut self, actions: &[f32]) {
+        assert_eq!(actions.len(), self.len() * ACTION, "actions are N·23");
         let actions = actions.as_chunks::<ACTION>().0;
         for (i, action) in actions.iter().enumerate() {
             let environment = &mut self.environments[i];
             self.acted[i] = environment.act(&self.setting, &mut self.bodies, i, action);
         }
         self.bodies.advance();
+    }
+
+    /// The second half of a step: what came of it is judged and written, and new episodes begin.
+    ///
+    /// # Panics
+    /// If a slice has another length than its field says.
+    pub fn observe(&mut self, out: &mut StepOut<'_>) {
+        let n = self.len();
+        out.check(n);
         for i in 0..n {
             let environment = &mut self.environments[i];
             let outcome = if self.acted[i] {

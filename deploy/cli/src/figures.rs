@@ -30,6 +30,52 @@ pub(crate) struct Figures {
 pub(crate) struct Timing {
     pub(crate) samples_per_second: Option<f64>,
     pub(crate) iteration_seconds: Option<f64>,
+    broadcast_seconds: f64,
+    gather_seconds: f64,
+    copy_seconds: f64,
+    physics_seconds: f64,
+    observation_seconds: f64,
+    inference_seconds: f64,
+    waiting_seconds: f64,
+    idle_share: Option<f64>,
+    learning: Learning,
+}
+
+/// The learner's part of it.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default)]
+struct Learning {
+    score: f64,
+    advantage: f64,
+    ppo: f64,
+    discriminator: f64,
+}
+
+impl Timing {
+    /// Where an iteration's time went, in one line; `None` where a line does not say.
+    pub(crate) fn split(&self) -> Option<String> {
+        let whole = self.iteration_seconds.filter(|seconds| *seconds > 0.0)?;
+        let ms = |seconds: f64| format!("{:.0}", 1e3 * seconds);
+        let mut line = format!(
+            "{} ms: actors {} physics, {} observation, {} inference, {} waiting; \
+             learner {} gathering ({} copying), {} scoring, {} PPO, {} discriminator, {} broadcast",
+            ms(whole),
+            ms(self.physics_seconds),
+            ms(self.observation_seconds),
+            ms(self.inference_seconds),
+            ms(self.waiting_seconds),
+            ms(self.gather_seconds),
+            ms(self.copy_seconds),
+            ms(self.learning.score + self.learning.advantage),
+            ms(self.learning.ppo),
+            ms(self.learning.discriminator),
+            ms(self.broadcast_seconds),
+        );
+        if let Some(idle) = self.idle_share {
+            let _ = write!(line, "; cores {:.0} % idle", 100.0 * idle);
+        }
+        Some(line)
+    }
 }
 
 /// What the figures do not say but one who watches wants to know.

@@ -92,6 +92,8 @@ fn describe(folder: &Folder, status: &Value) -> Result<String> {
         }),
         None => "no iteration yet".to_owned(),
     });
+    let timing = Figures::read(&status["metrics"]).and_then(|figures| figures.timing.split());
+    lines.extend(timing.map(|split| format!("time: {split}")));
     let processes = status["processes"].as_object().into_iter().flatten();
     let processes: Vec<String> = processes
         .map(|(role, pid)| format!("{role} {pid}"))
