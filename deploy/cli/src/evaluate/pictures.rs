@@ -78,10 +78,17 @@ fn tracking(
 ) -> LineChart {
     let (name, unit) = AXES[axis];
     let seconds = |step: usize| step as f64 / CONTROL_HZ;
-    let asked = (0..conditions.steps).map(|step| {
-        let command = scenario.command(step, conditions.steps)[axis];
-        (seconds(step as usize), f64::from(command))
-    });
+    let command = |step| f64::from(scenario.command(step, conditions.steps)[axis]);
+    let mut asked = Vec::new();
+    for step in 0..conditions.steps {
+        // Only where it changes, and the two ends.
+        if step == 0 || command(step) != command(step - 1) {
+            asked.extend(asked.last().map(|&(_, y)| (seconds(step as usize), y)));
+            asked.push((seconds(step as usize), command(step)));
+        }
+    }
+    let end = seconds(conditions.steps as usize);
+    asked.extend(asked.last().map(|&(_, y)| (end, y)));
     let (mut median, mut band) = (Vec::new(), Vec::new());
     for first in (0..conditions.steps as usize).step_by(GROUP) {
         let mut means: Vec<f64> = traces
@@ -101,7 +108,7 @@ fn tracking(
         title: format!("{name} of robots on their feet"),
         x: Axis {
             label: "time, s".into(),
-            range: Some((0.0, seconds(conditions.steps as usize))),
+            range: Some((0.0, end)),
         },
         y: Axis {
             label: unit.into(),
@@ -111,7 +118,7 @@ fn tracking(
             Line {
                 label: "asked for".into(),
                 colour: Colour::Grey,
-                points: asked.collect(),
+                points: asked,
             },
             Line {
                 label: "median, and 80 % of robots".into(),
