@@ -4,7 +4,6 @@ use amp::{Batch, Segment};
 use g1::gait::{Feet, Gait, Pace, Signs, Verdict, speed_use};
 use g1::observation::{COMMAND, GRAVITY, state_of};
 use g1::{FEATURES, OBSERVATION};
-use nalgebra::Vector3;
 use tracing::{info, warn};
 
 /// Steps per second.
@@ -106,8 +105,9 @@ fn forces(batch: &Batch, row: usize) -> [f32; 2] {
 
 /// Direction of gravity in the base frame as it was observed: the features do not have it. With
 /// sensor noise it is off by up to 0.05, which moves feet by centimetres but not on average.
-fn gravity(batch: &Batch, row: usize) -> Vector3<f32> {
-    Vector3::from_row_slice(&batch.observations[row * OBSERVATION..][GRAVITY])
+fn gravity(batch: &Batch, row: usize) -> [f32; 3] {
+    let seen = &batch.observations[row * OBSERVATION..][..OBSERVATION];
+    std::array::from_fn(|axis| seen[GRAVITY.start + axis])
 }
 
 /// Says in the log what the gait has become.

@@ -67,14 +67,14 @@ pub fn features(state: &RobotState, out: &mut [f32]) {
 ///
 /// # Panics
 /// If `features` is not 53 long.
-pub fn state_of(features: &[f32], gravity: Vector3<f32>) -> RobotState {
+pub fn state_of(features: &[f32], gravity: [f32; 3]) -> RobotState {
     assert_eq!(
         features.len(),
         FEATURES,
         "the features of a step are 53 numbers"
     );
     // Upside down, any half turn will do.
-    let orientation = UnitQuaternion::rotation_between(&gravity, &-Vector3::z())
+    let orientation = UnitQuaternion::rotation_between(&Vector3::from(gravity), &-Vector3::z())
         .unwrap_or_else(|| UnitQuaternion::from_euler_angles(PI, 0.0, 0.0));
     let in_world =
         |numbers: Range<usize>| orientation * Vector3::from_row_slice(&features[numbers]);
@@ -167,7 +167,7 @@ mod tests {
         state.orientation = UnitQuaternion::from_euler_angles(0.2, -0.3, 0.9);
         let mut seen = [f32::NAN; FEATURES];
         features(&state, &mut seen);
-        let back = state_of(&seen, state.projected_gravity());
+        let back = state_of(&seen, state.projected_gravity().into());
         assert!((back.projected_gravity() - state.projected_gravity()).norm() < 1e-6);
         let mut again = [f32::NAN; FEATURES];
         features(&back, &mut again);

@@ -204,8 +204,8 @@ impl Fleet {
     }
 
     /// Pushes an environment's robot before its next step: a jump of its velocity, world frame, m/s.
-    pub fn push(&mut self, environment: usize, change: Vector3<f32>) {
-        self.bodies.push(environment, change);
+    pub fn push(&mut self, environment: usize, change: [f32; 3]) {
+        self.bodies.push(environment, Vector3::from(change));
     }
 
     /// What an environment's last step led to, also where an episode ended with it.

@@ -1,29 +1,57 @@
-//! `ampco evaluate`: how well a policy walks, by the definitions of III-F.
+//! `ampco evaluate`: how well a policy walks, by the definitions of III-F and by its gait.
 //!
-//! The policy acts without noise. Every command is held for a whole episode by robots that begin
-//! standing, without randomisation unless it is asked for; a robot that fell counts until it fell.
+//! The policy acts without noise. A robot that fell counts until it fell. Episodes are spread over
+//! threads; the seed alone decides the result.
 
 mod episodes;
 mod judge;
+mod pictures;
+mod reference;
+mod report;
+mod scenario;
+mod spread;
 mod subject;
+mod table;
+mod tally;
 
 use std::io::Write;
+use std::path::PathBuf;
 use std::str::FromStr;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use serde_json::{Value, json};
+use serde_json::Value;
 
+use crate::console::Console;
 use crate::engine::Engine;
 use crate::failure::usage;
+use crate::figures::clock;
 use crate::place::Place;
-use episodes::{Conditions, Outcome};
-use subject::Subject;
+use episodes::{Conditions, Unit, Walker};
+use report::Report;
+use scenario::Scenario;
+use subject::{Kept, Subject};
+use tally::Tally;
 
-/// Walk with a trained policy: survival, velocity error, energy, style, gait
-///
-/// The policy acts without exploration noise. Each command is tried by a number of robots at once,
-/// from standing, without randomisation.
+const LONG: &str = "\
+Walk with a trained policy: survival, velocity errors, energy, style, gait
+
+The policy acts without exploration noise. Each command is tried by a number of robots, from standing,
+without randomisation. `--suite standard` tries everything that a policy should be able to do: speeds
+from 0 to 2 m/s, backwards, sideways, turning, changes of the command, pushes, from standing and from
+reference frames, with and without Table I.
+
+Style is the reward of a discriminator (Eq. 7). Every run trains its own, and a run whose discriminator
+learnt little finds itself graceful. To compare runs, let one judge them all with --judge. A judge is a
+checkpoint that is kept and never trained on, best of a long run that walks well:
+
+  cp -r runs/walk/checkpoints/00000400 judge && cp runs/walk/config.toml judge/
+  ampco evaluate other-run --judge judge";
+
+/// Walk with a trained policy: survival, velocity errors, energy, style, gait
 #[derive(Debug, clap::Args)]
+#[command(long_about = LONG)]
 pub(crate) struct Evaluate {
     /// A run's name or folder, a checkpoint's folder, or the folder of a shipped policy
     run: String,
@@ -33,16 +61,25 @@ pub(crate) struct Evaluate {
     /// [default: 0.5,0,0 and 1,0,0]
     #[arg(long = "command", value_name = "VX,VY,WZ", allow_hyphen_values = true)]
     commands: Vec<Command>,
+    /// Try a whole suite of scenarios and write report.json, report.md and plots
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["commands", "randomize", "from_reference"])]
+    suite: Option<Suite>,
+    /// Folder for the report and the plots [default with --suite: RUN/evaluation/SUITE]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Score style by the discriminator of this checkpoint instead of the policy's own
+    #[arg(long, value_name = "CHECKPOINT")]
+    judge: Option<String>,
     /// Length of an episode
     #[arg(long, value_name = "S", default_value_t = 20.0)]
     seconds: f64,
-    /// Episodes per command
+    /// Episodes per command or scenario
     #[arg(long, value_name = "N", default_value_t = 32)]
     episodes: usize,
     /// Apply every row of the paper's domain randomisation (Table I)
     #[arg(long)]
     randomize: bool,
-    /// Begin in frames of the reference motion instead of standing
+    /// Begin in frames of the reference motion nearest to the command instead of standing
     #[arg(long)]
     from_reference: bool,
     /// Engine that judges, whatever the policy was trained in
@@ -51,9 +88,19 @@ pub(crate) struct Evaluate {
     /// Seed of the episodes
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// End with one JSON array, an object per command
+    /// Threads that simulate; the result does not depend on it [default: one per core]
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// End with JSON: an array with an object per command, or the suite's report
     #[arg(long)]
     json: bool,
+}
+
+/// A named list of scenarios.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Suite {
+    /// All that a policy should be able to do
+    Standard,
 }
 
 /// vx, vy (m/s, heading frame) and yaw rate (rad/s).
@@ -79,6 +126,34 @@ impl FromStr for Command {
 
 impl Evaluate {
     pub(crate) fn run(&self) -> Result<()> {
+        let conditions = self.conditions()?;
+        let mut subject = Subject::open(&self.place, &self.run)?;
+        subject.task.physics = self.physics.into();
+        let given = self.judge.as_deref();
+        let frozen = given
+            .map(|judge| Kept::open(&self.place, judge))
+            .transpose()
+            .context("opening the judge of --judge")?;
+        let scenarios = self.scenarios();
+        let out = self.out(&subject);
+        let judge = frozen.as_ref().unwrap_or(&subject.kept);
+        let tallies = self.try_all(&subject, judge, &scenarios, &conditions)?;
+        let report = Report::of(
+            &subject,
+            frozen.as_ref(),
+            self.suite_name(),
+            &scenarios,
+            &tallies,
+            &conditions,
+        );
+        if let Some(folder) = &out {
+            report.write(folder)?;
+            pictures::write(folder, &scenarios, &tallies, &conditions)?;
+        }
+        self.print(&report, out.as_deref())
+    }
+
+    fn conditions(&self) -> Result<Conditions> {
         let (seconds, episodes) = (self.seconds, self.episodes);
         if !(0.02..=3_600.0).contains(&seconds) {
             return Err(usage(format!("--seconds {seconds}: give 0.02 to 3600")));
@@ -86,87 +161,165 @@ impl Evaluate {
         if !(1..=4_096).contains(&episodes) {
             return Err(usage(format!("--episodes {episodes}: give 1 to 4096")));
         }
-        let mut subject = Subject::open(&self.place, &self.run)?;
-        subject.task.physics = self.physics.into();
+        if self.threads == Some(0) {
+            return Err(usage("--threads 0: give at least 1"));
+        }
+        Ok(Conditions {
+            steps: (seconds * tally::CONTROL_HZ).round() as u32,
+            episodes,
+            seed: self.seed,
+            traced: self.suite.is_some() || self.out.is_some(),
+        })
+    }
+
+    fn scenarios(&self) -> Vec<Scenario> {
+        if let Some(Suite::Standard) = self.suite {
+            return scenario::standard();
+        }
         let commands: &[Command] = match self.commands.as_slice() {
             [] => &DEFAULT_COMMANDS,
             given => given,
         };
-        let conditions = Conditions {
-            steps: (seconds * 50.0).round() as u32,
-            episodes,
-            randomize: self.randomize,
+        let scenario = |&Command(command): &Command| Scenario {
             from_reference: self.from_reference,
-            seed: self.seed,
+            randomize: self.randomize,
+            ..Scenario::holding(command.map(|x| x.to_string()).join(","), command)
         };
-        let mut out = std::io::stdout().lock();
-        let mut rows = Vec::new();
-        if !self.json {
-            let (path, iteration) = (subject.path.display(), subject.iteration);
-            writeln!(
-                out,
-                "{path}, iteration {iteration}: {episodes} episodes of {seconds} s each"
-            )?;
-            writeln!(out, "{HEADING}")?;
+        commands.iter().map(scenario).collect()
+    }
+
+    fn suite_name(&self) -> &'static str {
+        match self.suite {
+            Some(Suite::Standard) => "standard",
+            None => "commands",
         }
-        for &Command(command) in commands {
-            let outcome = episodes::walk(&subject, command, &conditions)
-                .with_context(|| format!("walking at {command:?}"))?;
-            if self.json {
-                rows.push(row(command, &outcome));
-            } else {
-                writeln!(out, "{}", line(command, &outcome))?;
-            }
+    }
+
+    /// Where the report goes, if anywhere.
+    fn out(&self, subject: &Subject) -> Option<PathBuf> {
+        let of_suite = || {
+            self.suite
+                .map(|_| subject.kept.evaluations().join(self.suite_name()))
+        };
+        self.out.clone().or_else(of_suite)
+    }
+
+    /// All episodes of all scenarios: a tally each.
+    fn try_all(
+        &self,
+        subject: &Subject,
+        judge: &Kept,
+        scenarios: &[Scenario],
+        conditions: &Conditions,
+    ) -> Result<Vec<Tally>> {
+        let units: Vec<(usize, Unit<'_>)> = scenarios
+            .iter()
+            .enumerate()
+            .flat_map(|(index, scenario)| {
+                episodes::units(scenario, conditions).map(move |unit| (index, unit))
+            })
+            .collect();
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let progress = Progress::new(units.iter().map(|(_, unit)| unit.episodes), conditions);
+        let mut console = Console::new();
+        let parts = spread::spread(
+            &units,
+            self.threads.unwrap_or(cores),
+            || Walker::new(subject, judge),
+            |walker, (_, unit)| {
+                let before = progress.of_unit(unit.episodes);
+                let walked = walker.walk(unit, conditions, |robots| before.step(robots));
+                walked.with_context(|| format!("trying {}", unit.scenario.name))
+            },
+            || console.show(&progress.line(), Instant::now()),
+        );
+        console.finish();
+        let mut tallies = vec![Tally::default(); scenarios.len()];
+        // In the order of the episodes, so that the sums round alike whoever did them.
+        for ((index, _), part) in units.iter().zip(parts?) {
+            tallies[*index].merge(part);
         }
-        if self.json {
-            writeln!(out, "{}", Value::Array(rows))?;
+        Ok(tallies)
+    }
+
+    fn print(&self, report: &Report, out: Option<&std::path::Path>) -> Result<()> {
+        let mut text = if self.json {
+            let value = match self.suite {
+                Some(_) => serde_json::to_value(report)?,
+                None => Value::Array(report.rows()?),
+            };
+            value.to_string()
+        } else {
+            report.text()
+        };
+        if let Some(folder) = out.filter(|_| !self.json) {
+            text.push_str(&format!("\n\nwritten to {}", folder.display()));
         }
-        Ok(())
+        text.push('\n');
+        std::io::stdout()
+            .write_all(text.as_bytes())
+            .context("writing to standard output")
     }
 }
 
-const HEADING: &str = "\
-      command      survival   rmse   energy   style   hips  stride   duty flight
-   vx    vy    wz      %       m/s  J/1000      -      -      Hz      -      %";
-
-fn line(command: [f32; 3], outcome: &Outcome) -> String {
-    let or_dash = |number: Option<f64>, digits: usize| {
-        number.map_or_else(|| "-".to_owned(), |number| format!("{number:.digits$}"))
-    };
-    let gait = &outcome.gait;
-    format!(
-        "{:5.2} {:5.2} {:5.2}  {:6.1}  {:7.3} {:8.0}  {:6.3} {:>6} {:>7} {:>6} {:>6}",
-        command[0],
-        command[1],
-        command[2],
-        100.0 * outcome.survival,
-        outcome.rmse,
-        outcome.energy_j,
-        outcome.style_reward,
-        or_dash(gait.hip_correlation(), 2),
-        or_dash(gait.stride_rate(50.0), 2),
-        or_dash(gait.duty_factor(), 2),
-        or_dash(gait.flight_share().map(|share| 100.0 * share), 1),
-    )
+/// How far all threads together have come.
+struct Progress {
+    started: Instant,
+    /// Steps of robots, those of episodes that ended early included.
+    done: AtomicU64,
+    all: u64,
+    steps: u32,
 }
 
-fn row(command: [f32; 3], outcome: &Outcome) -> Value {
-    json!({
-        "command": command,
-        "episodes": outcome.episodes,
-        "survival": outcome.survival,
-        "rmse": outcome.rmse,
-        "energy_j": outcome.energy_j,
-        "style_reward": outcome.style_reward,
-        "task_reward": outcome.task_reward,
-        "velocity": outcome.velocity,
-        "yaw_rate": outcome.yaw_rate,
-        "seconds_survived": outcome.seconds_survived,
-        "hip_correlation": outcome.gait.hip_correlation(),
-        "stride_rate_hz": outcome.gait.stride_rate(50.0),
-        "duty_factor": outcome.gait.duty_factor(),
-        "flight_share": outcome.gait.flight_share(),
-    })
+/// How far a unit has come; the steps that a unit need not do count when it ends.
+struct UnitProgress<'a> {
+    progress: &'a Progress,
+    left: AtomicU64,
+}
+
+impl Progress {
+    fn new(episodes: impl Iterator<Item = usize>, conditions: &Conditions) -> Self {
+        Self {
+            started: Instant::now(),
+            done: AtomicU64::new(0),
+            all: episodes.sum::<usize>() as u64 * u64::from(conditions.steps),
+            steps: conditions.steps,
+        }
+    }
+
+    fn of_unit(&self, episodes: usize) -> UnitProgress<'_> {
+        UnitProgress {
+            progress: self,
+            left: AtomicU64::new(episodes as u64 * u64::from(self.steps)),
+        }
+    }
+
+    fn line(&self) -> String {
+        let share = self.done.load(Ordering::Relaxed) as f64 / self.all as f64;
+        let gone = self.started.elapsed();
+        let mut line = format!("evaluating · {:.0} %", 100.0 * share);
+        if share > 0.0 && gone > Duration::from_secs(1) {
+            let left = gone.mul_f64((1.0 - share) / share);
+            line.push_str(&format!(" · {} left", clock(left)));
+        }
+        line
+    }
+}
+
+impl UnitProgress<'_> {
+    fn step(&self, robots: usize) {
+        self.left.fetch_sub(robots as u64, Ordering::Relaxed);
+        self.progress
+            .done
+            .fetch_add(robots as u64, Ordering::Relaxed);
+    }
+}
+
+impl Drop for UnitProgress<'_> {
+    fn drop(&mut self) {
+        let left = self.left.load(Ordering::Relaxed);
+        self.progress.done.fetch_add(left, Ordering::Relaxed);
+    }
 }
 
 #[cfg(test)]
@@ -179,5 +332,21 @@ mod tests {
         for text in ["", "0.8", "0.8,0", "0.8,0,0,0", "a,b,c", "inf,0,0"] {
             assert!(text.parse::<Command>().is_err(), "{text:?}");
         }
+    }
+
+    #[test]
+    fn episodes_that_end_early_count_as_done() {
+        let conditions = Conditions {
+            steps: 100,
+            episodes: 4,
+            seed: 1,
+            traced: false,
+        };
+        let progress = Progress::new([2, 2].into_iter(), &conditions);
+        let unit = progress.of_unit(2);
+        unit.step(2);
+        assert!(progress.line().contains("0 %")); // 2 of 400
+        drop(unit);
+        assert!(progress.line().contains("50 %"), "{}", progress.line());
     }
 }

@@ -20,6 +20,8 @@ pub(crate) struct Figures {
     pub(crate) task_weight: Option<f64>,
     pub(crate) phase: Option<u32>,
     pub(crate) episode_length: Option<f64>,
+    /// What the gait is, in words.
+    pub(crate) gait: Option<String>,
     pub(crate) actors: Option<u64>,
     pub(crate) timing: Timing,
 }
@@ -109,6 +111,9 @@ impl Figures {
         if let Some(length) = self.episode_length {
             let _ = write!(line, " · episode {length:.0} steps");
         }
+        if let Some(gait) = &self.gait {
+            let _ = write!(line, " · {gait}");
+        }
         if let Some(phase) = self.phase {
             let _ = write!(line, " · phase {phase}");
         }
@@ -188,7 +193,7 @@ mod tests {
         json!({
             "iteration": iteration, "samples": 8192 * iteration, "style_mean": 0.31, "task_mean": 0.625,
             "style_weight": 0.9, "task_weight": 0.1, "phase": 1, "episode_length": null, "actors": 2,
-            "kl": 0.02, "timing": { "iteration_seconds": seconds, "samples_per_second": 4096.4 },
+            "gait": "hop: hips in phase (+0.94)", "kl": 0.02, "timing": { "iteration_seconds": seconds, "samples_per_second": 4096.4 },
         })
     }
 
@@ -202,8 +207,8 @@ mod tests {
         };
         assert_eq!(
             figures.line(&outlook),
-            "iteration 3/50 · 4096 samples/s · style 0.310 task 0.625 · phase 1 · weights 0.90/0.10 \
-             · 1 actor alive · 1:34 left"
+            "iteration 3/50 · 4096 samples/s · style 0.310 task 0.625 · hop: hips in phase (+0.94) \
+             · phase 1 · weights 0.90/0.10 · 1 actor alive · 1:34 left"
         );
         assert_eq!(Figures::read(&json!({ "style_mean": 1.0 })), None);
     }

@@ -13,6 +13,7 @@ mod evaluate;
 mod failure;
 mod figures;
 mod place;
+mod plot;
 mod presets;
 mod resolve;
 mod status;
@@ -38,6 +39,8 @@ Examples:
   ampco status                                    the newest run: how it is going
   ampco actor --run walk                          lend another core to a running group
   ampco evaluate walk --command 0.8,0,0 --json    how well the policy walks
+  ampco evaluate walk --suite standard            everything it should be able to do, as a report
+  ampco plot walk                                 its learning curves, as SVG
   ampco bench sim                                 how fast this machine simulates
 
 A run lives in runs/<name>/: config.toml (every value, defaults included), metrics.jsonl (a line per
@@ -57,6 +60,7 @@ enum Command {
     Actor(actor::AddActor),
     Status(status::Status),
     Evaluate(evaluate::Evaluate),
+    Plot(plot::Plot),
     Bench(bench::Bench),
 }
 
@@ -69,6 +73,7 @@ fn main() -> ExitCode {
         Command::Actor(actor) => actor.run(),
         Command::Status(status) => status.run(),
         Command::Evaluate(evaluate) => evaluate.run(),
+        Command::Plot(plot) => plot.run(),
         Command::Bench(bench) => bench.run(),
     };
     match done {

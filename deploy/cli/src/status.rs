@@ -60,6 +60,7 @@ fn status(folder: &Folder) -> Result<Value> {
         "iteration": figure("iteration"),
         "samples": figure("samples"),
         "samples_per_second": newest["timing"]["samples_per_second"],
+        "gait": figure("gait"),
         "phase": figure("phase"),
         "style_weight": figure("style_weight"),
         "task_weight": figure("task_weight"),
@@ -126,7 +127,8 @@ mod tests {
                 .contains("no iteration yet")
         );
 
-        let record = json!({ "iteration": 7, "samples": 70, "phase": 1, "timing": {} });
+        let record =
+            json!({ "iteration": 7, "samples": 70, "phase": 1, "gait": "walk", "timing": {} });
         run::Metrics::open(&folder.metrics_path())
             .unwrap()
             .append(&record)
@@ -142,11 +144,12 @@ mod tests {
         assert_eq!(status["alive"], true);
         assert_eq!(status["iteration"], 7);
         assert_eq!(status["actors"], 1);
+        assert_eq!(status["gait"], "walk");
         assert_eq!(status["processes"]["learner"], std::process::id());
         assert_eq!(status["checkpoints"], json!([5]));
         let words = describe(&folder, &status).unwrap();
         assert!(
-            words.contains("iteration 7/50") && words.contains("1 actor alive"),
+            words.contains("iteration 7/50 · walk") && words.contains("1 actor alive"),
             "{words}"
         );
         assert!(words.contains("1 checkpoint, the newest"), "{words}");

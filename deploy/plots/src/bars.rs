@@ -1,7 +1,7 @@
 //! Shares by name: a bar for what is usual, a thin one for the greatest.
 
 use crate::Colour;
-use crate::canvas::{self, Area, BOTTOM, Drawn, RIGHT, TOP};
+use crate::canvas::{self, Area, BOTTOM, Drawn, MARGIN, TOP};
 use plotters::chart::ChartBuilder;
 use plotters::element::{EmptyElement, PathElement, Rectangle, Text};
 use plotters::style::text_anchor::{HPos, VPos};
@@ -64,7 +64,8 @@ impl BarChart {
             .fold(1e-9, f64::max);
         let mut chart = ChartBuilder::on(area)
             .margin_top(TOP)
-            .margin_right(RIGHT)
+            .margin_left(MARGIN)
+            .margin_right(MARGIN)
             .x_label_area_size(BOTTOM)
             .y_label_area_size(NAMES)
             .build_cartesian_2d(0.0..1.04 * longest, rows..0.0)?;

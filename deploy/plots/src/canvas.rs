@@ -18,8 +18,8 @@ pub(crate) const TOP: i32 = 26;
 pub(crate) const LEFT: u32 = 62;
 /// Room for the numbers and the name under the horizontal axis, pixels.
 pub(crate) const BOTTOM: u32 = 38;
-/// Free room on the right, pixels.
-pub(crate) const RIGHT: i32 = 14;
+/// Free room on both sides, pixels.
+pub(crate) const MARGIN: i32 = 12;
 
 const INK: RGBColor = RGBColor(40, 40, 40);
 const GREY: RGBColor = RGBColor(120, 120, 120);

@@ -1,7 +1,7 @@
 //! What is on the ground when: a row per foot, filled while it carries.
 
 use crate::Colour;
-use crate::canvas::{self, Area, BOTTOM, Drawn, LEFT, RIGHT, TOP};
+use crate::canvas::{self, Area, BOTTOM, Drawn, LEFT, MARGIN, TOP};
 use plotters::chart::ChartBuilder;
 use plotters::element::{EmptyElement, Rectangle, Text};
 use plotters::style::text_anchor::{HPos, VPos};
@@ -73,7 +73,8 @@ impl ContactStrip {
         }
         let mut chart = ChartBuilder::on(area)
             .margin_top(TOP)
-            .margin_right(RIGHT)
+            .margin_left(MARGIN)
+            .margin_right(MARGIN)
             .x_label_area_size(BOTTOM)
             .y_label_area_size(LEFT)
             .build_cartesian_2d(from..to, self.rows.len() as f64..0.0)?;

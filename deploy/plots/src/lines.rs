@@ -1,7 +1,7 @@
 //! Curves over a common axis, with bands around them and marks across them.
 
 use crate::Colour;
-use crate::canvas::{self, Area, BOTTOM, Drawn, LEFT, RIGHT, TOP};
+use crate::canvas::{self, Area, BOTTOM, Drawn, LEFT, MARGIN, TOP};
 use plotters::chart::ChartBuilder;
 use plotters::element::{EmptyElement, PathElement, Polygon, Text};
 use plotters::style::text_anchor::{HPos, VPos};
@@ -77,7 +77,8 @@ impl LineChart {
         };
         let mut chart = ChartBuilder::on(area)
             .margin_top(TOP)
-            .margin_right(RIGHT)
+            .margin_left(MARGIN)
+            .margin_right(MARGIN)
             .x_label_area_size(BOTTOM)
             .y_label_area_size(LEFT)
             .build_cartesian_2d(x.0..x.1, y.0..y.1)?;

@@ -464,7 +464,7 @@ fn a_push_from_outside_moves_the_robot_that_it_is_meant_for() {
     let (task, _) = eventful();
     let mut pushed = fleet(&task, &RandomizationConfig::none(), 2, 6);
     let mut left_alone = fleet(&task, &RandomizationConfig::none(), 2, 6);
-    pushed.push(0, Vector3::new(0.0, 0.5, 0.0));
+    pushed.push(0, [0.0, 0.5, 0.0]);
     let rest = [0.0; 2 * ACTION];
     step(&mut pushed, &rest);
     step(&mut left_alone, &rest);

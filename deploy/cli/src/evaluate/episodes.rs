@@ -1,144 +1,197 @@
-//! Episodes of one command: robots walk until they fall or the time is over, and are measured.
+//! Episodes of one scenario: robots go until they fall or the time is over, and are measured.
 
 use anyhow::Result;
-use g1::gait::Gait;
-use g1::{ACTION, FEATURES};
-use sim::{Fleet, RandomizationConfig, StepRows};
+use g1::gait::CONTACT_FORCE;
+use g1::joints::{LEFT_LEG, RIGHT_LEG};
+use g1::{ACTION, FEATURES, JOINTS};
+use policy::Policy;
+use sim::{Fleet, LastStep, RandomizationConfig, Starts, StepRows};
 
-use super::subject::Subject;
+use super::judge::Judge;
+use super::scenario::Scenario;
+use super::subject::{Kept, Subject};
+use super::tally::{Sample, Tally, Trace};
 
-/// Under which conditions a command is walked.
+/// Robots that are stepped together. Fixed, so that results do not depend on the number of threads.
+pub(super) const TOGETHER: usize = 16;
+
+/// How long, how often, and from which seed.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Conditions {
     pub(super) steps: u32,
     pub(super) episodes: usize,
-    pub(super) randomize: bool,
-    pub(super) from_reference: bool,
     pub(super) seed: u64,
+    /// Keep every step for plots.
+    pub(super) traced: bool,
 }
 
-/// What was measured, over all steps that robots were on their feet.
-#[derive(Debug)]
-pub(super) struct Outcome {
+/// Some episodes of a scenario: what one thread does at a time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Unit<'a> {
+    pub(super) scenario: &'a Scenario,
+    /// The first episode.
+    pub(super) first: usize,
     pub(super) episodes: usize,
-    /// Share of episodes without a fall.
-    pub(super) survival: f64,
-    /// √(mean ‖v* − v‖²), planar, heading frame, m/s.
-    pub(super) rmse: f64,
-    /// Positive mechanical work per 1,000 control steps of one robot, J.
-    pub(super) energy_j: f64,
-    pub(super) style_reward: f64,
-    pub(super) task_reward: f64,
-    /// Mean planar velocity in the heading frame, m/s.
-    pub(super) velocity: [f64; 2],
-    /// Mean yaw rate, rad/s.
-    pub(super) yaw_rate: f64,
-    /// Mean time to the fall or to the end.
-    pub(super) seconds_survived: f64,
-    pub(super) gait: Gait,
 }
 
-/// Sums over the steps of robots on their feet.
-#[derive(Default)]
-struct Sums {
-    steps: f64,
-    squared_error: f64,
-    energy: f64,
-    style: f64,
-    task: f64,
-    velocity: [f64; 2],
-    yaw_rate: f64,
-    gait: Gait,
-}
-
-/// Walks `conditions.episodes` episodes with one command.
-pub(super) fn walk(
-    subject: &Subject,
-    command: [f32; 3],
+/// A scenario's episodes in units.
+pub(super) fn units<'a>(
+    scenario: &'a Scenario,
     conditions: &Conditions,
-) -> Result<Outcome> {
-    let n = conditions.episodes;
-    let mut task = subject.task.clone();
-    task.episode_steps = conditions.steps + 1;
-    task.staggered = false;
-    task.start.reference_share = if conditions.from_reference { 1.0 } else { 0.0 };
-    let randomization = if conditions.randomize {
-        RandomizationConfig::default()
-    } else {
-        RandomizationConfig::none()
-    };
-    let mut fleet = Fleet::new(
-        &task,
-        &randomization,
-        subject.starts.clone(),
-        n,
-        conditions.seed,
-    )?;
-    for robot in 0..n {
-        fleet.hold_command(robot, command);
-    }
-    let mut policy = subject.policy()?;
-    let mut judge = subject.judge()?;
-    let mut block = Block::new(n);
-    let mut sums = Sums::default();
-    let mut survived = vec![None; n];
-    let mut forces_before: Vec<Option<[f32; 2]>> = vec![None; n];
-    for step in 0..conditions.steps {
-        block.features.copy_from_slice(fleet.features());
-        policy.means(fleet.observations(), n, &mut block.actions);
-        fleet.step(&block.actions, &mut block.rows.out());
-        judge.style_rewards(&block.features, &block.rows.next_features, &mut block.style);
-        for robot in 0..n {
-            if survived[robot].is_some() {
-                continue;
-            }
-            sums.add(&block, robot, forces_before[robot]);
-            forces_before[robot] = Some(block.forces(robot));
-            if block.rows.ends[robot] == 1.0 {
-                survived[robot] = Some(step + 1);
-            }
-        }
-        if survived.iter().all(Option::is_some) {
-            break;
-        }
-    }
-    let fallen = survived.iter().flatten().count();
-    let lived: u32 = survived
-        .iter()
-        .map(|fell| fell.unwrap_or(conditions.steps))
-        .sum();
-    Ok(sums.outcome(n, fallen, f64::from(lived) / n as f64 / 50.0))
+) -> impl Iterator<Item = Unit<'a>> {
+    let all = conditions.episodes;
+    (0..all).step_by(TOGETHER).map(move |first| Unit {
+        scenario,
+        first,
+        episodes: TOGETHER.min(all - first),
+    })
 }
 
-impl Sums {
-    fn add(&mut self, block: &Block, robot: usize, forces_before: Option<[f32; 2]>) {
-        let rows = &block.rows;
-        let next = &rows.next_features[robot * FEATURES..][..FEATURES];
-        self.steps += 1.0;
-        self.squared_error += f64::from(rows.tracking_errors[robot]);
-        self.energy += f64::from(rows.energies[robot]);
-        self.style += f64::from(block.style[robot]);
-        self.task += f64::from(rows.task_rewards[robot]);
-        // Upright robots: base and heading frame differ by the small tilt.
-        self.velocity[0] += f64::from(next[1]);
-        self.velocity[1] += f64::from(next[2]);
-        self.yaw_rate += f64::from(next[6]);
-        self.gait.add(next, block.forces(robot), forces_before);
+/// A policy that acts and a judge that looks: each thread has its own.
+pub(super) struct Walker<'a> {
+    subject: &'a Subject,
+    policy: Policy,
+    judge: Judge,
+}
+
+impl<'a> Walker<'a> {
+    /// With the discriminator of `judge`.
+    pub(super) fn new(subject: &'a Subject, judge: &Kept) -> Result<Self> {
+        Ok(Self {
+            subject,
+            policy: subject.policy()?,
+            judge: Judge::of(judge)?,
+        })
     }
 
-    fn outcome(self, episodes: usize, fallen: usize, seconds_survived: f64) -> Outcome {
-        let mean = |sum: f64| sum / self.steps;
-        Outcome {
-            episodes,
-            survival: (episodes - fallen) as f64 / episodes as f64,
-            rmse: mean(self.squared_error).sqrt(),
-            energy_j: mean(self.energy) * 1_000.0,
-            style_reward: mean(self.style),
-            task_reward: mean(self.task),
-            velocity: self.velocity.map(mean),
-            yaw_rate: mean(self.yaw_rate),
-            seconds_survived,
-            gait: self.gait,
+    /// Goes through a unit; `tell` hears how many robots made each step.
+    pub(super) fn walk(
+        &mut self,
+        unit: &Unit<'_>,
+        conditions: &Conditions,
+        tell: impl Fn(usize),
+    ) -> Result<Tally> {
+        let n = unit.episodes;
+        let scenario = unit.scenario;
+        let mut fleet = self.fleet(unit, conditions)?;
+        let mut block = Block::new(n);
+        let mut robots = vec![Robot::default(); n];
+        let mut tally = Tally {
+            episodes: n,
+            traces: vec![Trace::default(); n],
+            ..Tally::default()
+        };
+        for step in 0..conditions.steps {
+            let command = scenario.command(step, conditions.steps);
+            for robot in 0..n {
+                if fleet.command(robot) != command {
+                    fleet.hold_command(robot, command);
+                }
+                let episode = unit.first + robot;
+                let push = scenario.push(step, conditions.steps, episode, conditions.episodes);
+                if let Some([x, y]) = push {
+                    fleet.push(robot, [x, y, 0.0]);
+                }
+            }
+            block.features.copy_from_slice(fleet.features());
+            self.policy
+                .means(fleet.observations(), n, &mut block.actions);
+            fleet.step(&block.actions, &mut block.rows.out());
+            for (robot, life) in robots.iter_mut().enumerate().filter(|(_, l)| !l.fallen) {
+                let (before, after) = block.transition(robot);
+                self.judge.take(before, after);
+                let last = fleet.last_step(robot);
+                tally.add(&block, robot, command, last, life.forces);
+                if conditions.traced {
+                    tally.traces[robot].samples.push(sample(last));
+                }
+                life.forces = Some(last.exertion.foot_forces);
+                life.fallen = block.rows.ends[robot] == 1.0;
+            }
+            tell(n);
+            if robots.iter().all(|robot| robot.fallen) {
+                break;
+            }
         }
+        tally.fallen = robots.iter().filter(|robot| robot.fallen).count();
+        tally.style = self.judge.sum();
+        if !conditions.traced {
+            tally.traces.clear();
+        }
+        Ok(tally)
+    }
+
+    fn fleet(&self, unit: &Unit<'_>, conditions: &Conditions) -> Result<Fleet> {
+        let scenario = unit.scenario;
+        let mut task = self.subject.task.clone();
+        // Nobody's time is up before ours.
+        task.episode_steps = conditions.steps + 1;
+        task.staggered = false;
+        let (starts, share) = if scenario.from_reference {
+            (self.subject.starts(scenario.commands[0]), 1.0)
+        } else {
+            (Starts::default(), 0.0)
+        };
+        task.start.reference_share = share;
+        let randomization = if scenario.randomize {
+            RandomizationConfig::default()
+        } else {
+            RandomizationConfig::none()
+        };
+        // Robots of one unit differ by their index; units differ by their seed.
+        let seed = conditions.seed.wrapping_add((unit.first as u64) << 32);
+        Ok(Fleet::new(
+            &task,
+            &randomization,
+            starts,
+            unit.episodes,
+            seed,
+        )?)
+    }
+}
+
+/// What is remembered of a robot from step to step.
+#[derive(Clone, Copy, Debug, Default)]
+struct Robot {
+    fallen: bool,
+    forces: Option<[f32; 2]>,
+}
+
+impl Tally {
+    fn add(
+        &mut self,
+        block: &Block,
+        robot: usize,
+        command: [f32; 3],
+        last: &LastStep,
+        forces_before: Option<[f32; 2]>,
+    ) {
+        let LastStep { state, exertion } = last;
+        let velocity = state.velocity_in_heading();
+        let yaw_rate = state.angular_velocity.z;
+        let (_, features) = block.transition(robot);
+        self.steps += 1.0;
+        self.squared_error += f64::from(block.rows.tracking_errors[robot]);
+        for (axis, got) in [velocity.x, velocity.y, yaw_rate].into_iter().enumerate() {
+            self.squared_errors[axis] += f64::from(command[axis] - got).powi(2);
+        }
+        self.energy += f64::from(exertion.energy);
+        self.task += f64::from(block.rows.task_rewards[robot]);
+        self.yaw_rate += f64::from(yaw_rate);
+        self.pace.add(command, [velocity.x, velocity.y]);
+        self.gait.add(features, exertion.foot_forces, forces_before);
+        self.feet.add(state, exertion.foot_forces, forces_before);
+        self.motors.add(&exertion.torque_use, &exertion.speed_use);
+    }
+}
+
+fn sample(LastStep { state, exertion }: &LastStep) -> Sample {
+    let velocity = state.velocity_in_heading();
+    let joints: &[f32; JOINTS] = &state.joint_positions;
+    Sample {
+        velocity: [velocity.x, velocity.y, state.angular_velocity.z],
+        hips: [joints[LEFT_LEG], joints[RIGHT_LEG]],
+        down: exertion.foot_forces.map(|force| force > CONTACT_FORCE),
     }
 }
 
@@ -146,7 +199,6 @@ impl Sums {
 struct Block {
     features: Vec<f32>,
     actions: Vec<f32>,
-    style: Vec<f32>,
     rows: StepRows,
 }
 
@@ -155,14 +207,13 @@ impl Block {
         Self {
             features: vec![0.0; n * FEATURES],
             actions: vec![0.0; n * ACTION],
-            style: Vec::with_capacity(n),
             rows: StepRows::filled(n, 0.0),
         }
     }
 
-    /// Left and right foot force of a robot, N.
-    fn forces(&self, robot: usize) -> [f32; 2] {
-        let forces = &self.rows.foot_forces;
-        [forces[2 * robot], forces[2 * robot + 1]]
+    /// Features of a robot before and after the step.
+    fn transition(&self, robot: usize) -> (&[f32], &[f32]) {
+        let of = robot * FEATURES..(robot + 1) * FEATURES;
+        (&self.features[of.clone()], &self.rows.next_features[of])
     }
 }

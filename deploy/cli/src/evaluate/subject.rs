@@ -2,28 +2,34 @@
 
 use std::path::{Path, PathBuf};
 
-use amp::{Learning, LearningConfig};
+use amp::LearningConfig;
 use anyhow::{Context, Result};
 use motion::{Dataset, MotionConfig};
 use policy::{Policy, Shape};
 use run::{Checkpoint, Config};
 use sim::{Starts, TaskConfig};
 
-use super::judge::Judge;
+use super::reference::Reference;
 use crate::failure::usage;
 use crate::place::Place;
 
-/// A policy ready to walk, its judge, and its task.
-pub(super) struct Subject {
+/// A checkpoint with its configuration.
+pub(super) struct Kept {
     pub(super) path: PathBuf,
     pub(super) iteration: u64,
-    pub(super) task: TaskConfig,
-    pub(super) starts: Starts,
-    learning: LearningConfig,
+    pub(super) learning: LearningConfig,
+    config: Config,
     checkpoint: Checkpoint,
 }
 
-impl Subject {
+/// A policy with its task.
+pub(super) struct Subject {
+    pub(super) kept: Kept,
+    pub(super) task: TaskConfig,
+    pub(super) reference: Reference,
+}
+
+impl Kept {
     /// Opens what `name` means: a checkpoint's folder (of a run, or shipped with a `config.toml`
     /// beside its parts), or a run, whose newest checkpoint it is then.
     pub(super) fn open(place: &Place, name: &str) -> Result<Self> {
@@ -43,70 +49,73 @@ impl Subject {
         };
         let checkpoint = Checkpoint::open(&path)?;
         let config = Config::read(&config_of(&path)?)?;
-        let motion: MotionConfig = config.section("motion")?;
-        let dataset = Dataset::load(&motion, &path).context("loading the reference motion")?;
         Ok(Self {
             iteration: checkpoint.iteration,
-            task: config.checked("task", TaskConfig::validate)?,
-            starts: dataset
-                .frames()
-                .map(|(state, command, weight)| (*state, command, weight))
-                .collect(),
             learning: LearningConfig {
                 policy: config.section("policy")?,
                 exploration: config.section("exploration")?,
                 ppo: config.section("ppo")?,
                 discriminator: config.section("discriminator")?,
             },
+            config,
             checkpoint,
             path,
         })
     }
 
+    /// A part of the checkpoint.
+    pub(super) fn part(&self, name: &str) -> Result<&[u8]> {
+        self.checkpoint
+            .part(name)
+            .with_context(|| format!("checkpoint {} has no {name}", self.path.display()))
+    }
+
+    /// Where evaluations of it are kept: `evaluation/` in the run's folder, or beside the parts of
+    /// a checkpoint that lies in no run.
+    pub(super) fn evaluations(&self) -> PathBuf {
+        let home = run_of(&self.path).unwrap_or_else(|| self.path.clone());
+        home.join("evaluation")
+    }
+}
+
+impl Subject {
+    pub(super) fn open(place: &Place, name: &str) -> Result<Self> {
+        let kept = Kept::open(place, name)?;
+        let motion: MotionConfig = kept.config.section("motion")?;
+        let dataset = Dataset::load(&motion, &kept.path).context("loading the reference motion")?;
+        Ok(Self {
+            task: kept.config.checked("task", TaskConfig::validate)?,
+            reference: Reference::of(&dataset),
+            kept,
+        })
+    }
+
     /// The policy of the checkpoint, ready to act.
     pub(super) fn policy(&self) -> Result<Policy> {
-        let bytes = self.part("policy.bin")?;
+        let bytes = self.kept.part("policy.bin")?;
         let flat: Vec<f32> = bytes
             .as_chunks::<4>()
             .0
             .iter()
             .map(|number| f32::from_le_bytes(*number))
             .collect();
-        let mut policy = Policy::new(Shape::new(&self.learning.policy.hidden));
+        let mut policy = Policy::new(Shape::new(&self.kept.learning.policy.hidden));
         policy
             .load(&flat)
-            .with_context(|| format!("loading policy.bin of {}", self.path.display()))?;
+            .with_context(|| format!("loading policy.bin of {}", self.kept.path.display()))?;
         Ok(policy)
     }
 
-    /// The discriminator of the checkpoint.
-    pub(super) fn judge(&self) -> Result<Judge> {
-        // The seed is of weights that are replaced at once.
-        let mut learning = Learning::new(self.learning.clone(), learner::robot(), 0)
-            .context("setting up the networks")?;
-        learning
-            .load(self.part("learning.bin")?)
-            .with_context(|| format!("loading learning.bin of {}", self.path.display()))?;
-        Ok(Judge::new(learning))
-    }
-
-    fn part(&self, name: &str) -> Result<&[u8]> {
-        self.checkpoint
-            .part(name)
-            .with_context(|| format!("checkpoint {} has no {name}", self.path.display()))
+    /// Frames to begin from that go about as `command` asks.
+    pub(super) fn starts(&self, command: [f32; 3]) -> Starts {
+        self.reference.starts(command)
     }
 }
 
 /// The configuration of a checkpoint: beside its parts, or that of the run it lies in.
 fn config_of(checkpoint: &Path) -> Result<PathBuf> {
-    let checkpoint = checkpoint
-        .canonicalize()
-        .with_context(|| format!("resolving {}", checkpoint.display()))?;
     let beside = checkpoint.join("config.toml");
-    let of_the_run = checkpoint
-        .ancestors()
-        .nth(2)
-        .map(|run| run.join("config.toml"));
+    let of_the_run = run_of(checkpoint).map(|run| run.join("config.toml"));
     [Some(beside), of_the_run]
         .into_iter()
         .flatten()
@@ -117,4 +126,12 @@ fn config_of(checkpoint: &Path) -> Result<PathBuf> {
                 checkpoint.display()
             ))
         })
+}
+
+/// The folder of the run that a checkpoint lies in.
+fn run_of(checkpoint: &Path) -> Option<PathBuf> {
+    let checkpoint = checkpoint.canonicalize().ok()?;
+    let run = checkpoint.ancestors().nth(2)?;
+    (run.join("config.toml").is_file() && checkpoint.parent()?.ends_with("checkpoints"))
+        .then(|| run.to_owned())
 }

@@ -1,0 +1,203 @@
+//! What is measured over episodes: sums that add up in any grouping, and the numbers that follow.
+
+use g1::JOINT_TABLE;
+use g1::gait::{Feet, Gait, MotorUse, Pace, Signs, Verdict};
+use serde::Serialize;
+
+/// Steps per second.
+pub(super) const CONTROL_HZ: f64 = 50.0;
+
+/// Sums over the steps of robots on their feet.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tally {
+    pub(super) episodes: usize,
+    pub(super) fallen: usize,
+    pub(super) steps: f64,
+    pub(super) squared_error: f64,
+    /// Squared errors of forward velocity, lateral velocity and yaw rate.
+    pub(super) squared_errors: [f64; 3],
+    pub(super) energy: f64,
+    pub(super) style: f64,
+    pub(super) task: f64,
+    pub(super) yaw_rate: f64,
+    pub(super) gait: Gait,
+    pub(super) feet: Feet,
+    pub(super) pace: Pace,
+    pub(super) motors: MotorUse,
+    /// Of each episode, in order.
+    pub(super) traces: Vec<Trace>,
+}
+
+/// One episode as it went, until the fall or the end.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Trace {
+    pub(super) samples: Vec<Sample>,
+}
+
+/// One step of an episode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sample {
+    /// Forward and leftward velocity in the heading frame (m/s), yaw rate (rad/s).
+    pub(super) velocity: [f32; 3],
+    /// Left and right hip pitch, rad.
+    pub(super) hips: [f32; 2],
+    /// Whether the left and the right foot carry.
+    pub(super) down: [bool; 2],
+}
+
+impl Tally {
+    pub(super) fn merge(&mut self, other: Self) {
+        self.episodes += other.episodes;
+        self.fallen += other.fallen;
+        self.steps += other.steps;
+        self.squared_error += other.squared_error;
+        for axis in 0..3 {
+            self.squared_errors[axis] += other.squared_errors[axis];
+        }
+        self.energy += other.energy;
+        self.style += other.style;
+        self.task += other.task;
+        self.yaw_rate += other.yaw_rate;
+        self.gait.merge(&other.gait);
+        self.feet.merge(&other.feet);
+        self.pace.merge(&other.pace);
+        self.motors.merge(&other.motors);
+        self.traces.extend(other.traces);
+    }
+
+    /// Mean time to the fall or to the end, s.
+    fn seconds_survived(&self) -> f64 {
+        self.steps / self.episodes as f64 / CONTROL_HZ
+    }
+
+    /// What the gait is.
+    fn verdict(&self) -> Verdict {
+        let seconds = (self.fallen > 0).then(|| self.seconds_survived());
+        Verdict::of(&Signs::of(&self.gait, &self.pace, seconds, CONTROL_HZ))
+    }
+
+    pub(super) fn outcome(&self) -> Outcome {
+        let mean = |sum: f64| sum / self.steps;
+        let root = |sum: f64| mean(sum).sqrt();
+        let (torque_joint, torque_peak) = self.motors.torque_peak();
+        let (speed_joint, joint_speed_peak) = self.motors.speed_peak();
+        let verdict = self.verdict();
+        Outcome {
+            episodes: self.episodes,
+            survival: (self.episodes - self.fallen) as f64 / self.episodes as f64,
+            seconds_survived: self.seconds_survived(),
+            rmse: root(self.squared_error),
+            rmse_forward: root(self.squared_errors[0]),
+            rmse_lateral: root(self.squared_errors[1]),
+            rmse_yaw_rate: root(self.squared_errors[2]),
+            velocity: self.pace.velocity().unwrap_or_default(),
+            yaw_rate: mean(self.yaw_rate),
+            energy_j: mean(self.energy) * 1_000.0,
+            style_reward: mean(self.style),
+            task_reward: mean(self.task),
+            gait: verdict.to_string(),
+            gait_is_good: verdict.is_good(),
+            hip_correlation: self.gait.hip_correlation(),
+            contact_correlation: self.gait.contact_correlation(),
+            stride_rate_hz: self.gait.stride_rate(CONTROL_HZ),
+            duty_factor: self.gait.duty_factor(),
+            flight_share: self.gait.flight_share(),
+            pelvis_height: self.gait.pelvis_height(),
+            foot_clearance: self.feet.clearance(),
+            foot_slip: self.feet.slip_speed(),
+            slip_per_stride: self.feet.slip_per_stride(CONTROL_HZ),
+            step_lengths: self.feet.step_lengths(),
+            step_symmetry: self.feet.step_symmetry(),
+            torque_peak,
+            torque_peak_joint: JOINT_TABLE[torque_joint].name,
+            torque_saturated_share: self.motors.saturated_share(),
+            joint_speed_peak,
+            joint_speed_peak_joint: JOINT_TABLE[speed_joint].name,
+        }
+    }
+}
+
+/// What came of a scenario, over all steps that robots were on their feet.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Outcome {
+    pub(super) episodes: usize,
+    /// Share of episodes without a fall.
+    pub(super) survival: f64,
+    /// Mean time to the fall or to the end.
+    pub(super) seconds_survived: f64,
+    /// √(mean ‖v* − v‖²), planar, heading frame, m/s (III-F).
+    pub(super) rmse: f64,
+    /// Its forward part, m/s.
+    pub(super) rmse_forward: f64,
+    /// Its lateral part, m/s.
+    pub(super) rmse_lateral: f64,
+    /// √(mean (ω* − ω)²), about the vertical, rad/s.
+    pub(super) rmse_yaw_rate: f64,
+    /// Mean planar velocity in the heading frame, m/s.
+    pub(super) velocity: [f64; 2],
+    /// Mean yaw rate, rad/s.
+    pub(super) yaw_rate: f64,
+    /// Positive mechanical work per 1,000 control steps of one robot, J, without exploration noise.
+    pub(super) energy_j: f64,
+    pub(super) style_reward: f64,
+    pub(super) task_reward: f64,
+    /// The verdict in words.
+    pub(super) gait: String,
+    pub(super) gait_is_good: bool,
+    pub(super) hip_correlation: Option<f64>,
+    pub(super) contact_correlation: Option<f64>,
+    pub(super) stride_rate_hz: Option<f64>,
+    pub(super) duty_factor: Option<f64>,
+    pub(super) flight_share: Option<f64>,
+    pub(super) pelvis_height: Option<f64>,
+    /// Mean height of a sole in swing, m.
+    pub(super) foot_clearance: Option<f64>,
+    /// Mean speed of a sole in stance, m/s.
+    pub(super) foot_slip: Option<f64>,
+    /// Way of a sole in stance, m per stride.
+    pub(super) slip_per_stride: Option<f64>,
+    /// Mean, left and right, m.
+    pub(super) step_lengths: Option<[f64; 2]>,
+    pub(super) step_symmetry: Option<f64>,
+    /// Greatest share of an effort limit, and whose.
+    pub(super) torque_peak: f32,
+    pub(super) torque_peak_joint: &'static str,
+    /// Share of steps in which some motor gave all it has.
+    pub(super) torque_saturated_share: Option<f64>,
+    /// Greatest share of a velocity limit, and whose.
+    pub(super) joint_speed_peak: f32,
+    pub(super) joint_speed_peak_joint: &'static str,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn means_are_over_steps_and_survival_over_episodes() {
+        let mut tally = Tally {
+            episodes: 2,
+            fallen: 1,
+            steps: 100.0,
+            squared_error: 25.0,
+            squared_errors: [16.0, 9.0, 1.0],
+            energy: 200.0,
+            ..Tally::default()
+        };
+        tally.merge(Tally {
+            episodes: 2,
+            steps: 300.0,
+            squared_error: 75.0,
+            squared_errors: [48.0, 27.0, 3.0],
+            energy: 600.0,
+            ..Tally::default()
+        });
+        let outcome = tally.outcome();
+        assert_eq!(outcome.survival, 0.75);
+        assert_eq!(outcome.seconds_survived, 2.0); // 400 steps / 4 / 50 Hz
+        assert_eq!(outcome.rmse, 0.5); // √(100 / 400)
+        assert_eq!(outcome.rmse_forward, 0.4); // √(64 / 400)
+        assert_eq!(outcome.rmse_yaw_rate, 0.1);
+        assert_eq!(outcome.energy_j, 2_000.0); // 2 J a step
+    }
+}

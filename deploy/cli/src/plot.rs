@@ -1,0 +1,257 @@
+//! `ampco plot`: the learning curves of runs, from their metrics alone.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use plots::{Axis, Band, Colour, Figure, Line, LineChart, Mark, Panel, smooth};
+use run::{Folder, metrics};
+use serde::Deserialize;
+
+use crate::failure::usage;
+use crate::place::Place;
+
+/// Points of a curve: as many as a figure can show.
+const POINTS: usize = 150;
+
+/// Draw the learning curves of runs as SVG
+///
+/// Episode length, style and task reward, task weight, velocity error and hip correlation over
+/// millions of samples; a line marks where Phase II began. A curve is a mean over successive
+/// iterations, its band their least and greatest.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Plot {
+    /// Names or folders of the runs [default: the newest]
+    #[arg(value_name = "RUN")]
+    runs: Vec<String>,
+    #[command(flatten)]
+    place: Place,
+    /// File to write [default: curves.svg in the first run's folder]
+    #[arg(long, value_name = "FILE.svg")]
+    out: Option<PathBuf>,
+}
+
+/// What is drawn of a line of metrics; a line of a refused iteration has less.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default)]
+struct Record {
+    samples: u64,
+    phase: Option<u32>,
+    episode_length: Option<f64>,
+    style_mean: Option<f64>,
+    task_mean: Option<f64>,
+    task_weight: Option<f64>,
+    rmse: Option<f64>,
+    hip_correlation: Option<f64>,
+}
+
+/// A curve: its title, its unit, the range it must show, its key.
+struct Curve {
+    title: &'static str,
+    unit: &'static str,
+    range: Option<(f64, f64)>,
+    value: fn(&Record) -> Option<f64>,
+}
+
+const CURVES: [Curve; 6] = [
+    Curve {
+        title: "episode length",
+        unit: "control steps",
+        range: None,
+        value: |record| record.episode_length,
+    },
+    Curve {
+        title: "style reward",
+        unit: "",
+        range: None,
+        value: |record| record.style_mean,
+    },
+    Curve {
+        title: "task reward",
+        unit: "",
+        range: None,
+        value: |record| record.task_mean,
+    },
+    Curve {
+        title: "task weight, the style weight being 1 less it",
+        unit: "",
+        range: Some((0.0, 1.0)),
+        value: |record| record.task_weight,
+    },
+    Curve {
+        title: "velocity error (RMSE)",
+        unit: "m/s",
+        range: None,
+        value: |record| record.rmse,
+    },
+    Curve {
+        title: "hip correlation: −1 a walk, +1 a hop",
+        unit: "",
+        range: Some((-1.0, 1.0)),
+        value: |record| record.hip_correlation,
+    },
+];
+
+impl Plot {
+    pub(crate) fn run(&self) -> Result<()> {
+        let folders = match self.runs.as_slice() {
+            [] => vec![self.place.find(None)?],
+            names => names
+                .iter()
+                .map(|name| self.place.find(Some(name)))
+                .collect::<Result<_>>()?,
+        };
+        let mut runs = Vec::new();
+        for folder in &folders {
+            runs.push((folder.name(), records(folder)?));
+        }
+        let out = match &self.out {
+            Some(out) => out.clone(),
+            None => folders[0].path().join("curves.svg"),
+        };
+        run::replace_file(&out, figure(&runs).svg().as_bytes())
+            .with_context(|| format!("writing {}", out.display()))?;
+        writeln!(std::io::stdout(), "{}", out.display()).context("writing to standard output")
+    }
+}
+
+fn records(folder: &Folder) -> Result<Vec<Record>> {
+    let records = metrics::read::<Record>(&folder.metrics_path())?;
+    if records.is_empty() {
+        return Err(usage(format!(
+            "run `{}` has no iteration yet; the first takes some seconds",
+            folder.name()
+        )));
+    }
+    Ok(records)
+}
+
+fn figure(runs: &[(String, Vec<Record>)]) -> Figure {
+    let names: Vec<&str> = runs.iter().map(|(name, _)| name.as_str()).collect();
+    Figure {
+        title: format!("Learning: {}", names.join(", ")),
+        panels: CURVES
+            .iter()
+            .enumerate()
+            .map(|(index, curve)| Panel::Lines(chart(runs, curve, index == 0)))
+            .collect(),
+    }
+}
+
+fn chart(runs: &[(String, Vec<Record>)], curve: &Curve, named: bool) -> LineChart {
+    let mut chart = LineChart {
+        title: curve.title.into(),
+        x: Axis {
+            label: "million samples".into(),
+            range: None,
+        },
+        y: Axis {
+            label: curve.unit.into(),
+            range: curve.range,
+        },
+        ..LineChart::default()
+    };
+    for (index, (name, records)) in runs.iter().enumerate() {
+        let colour = Colour::Series(index);
+        let points: Vec<(f64, f64)> = records
+            .iter()
+            .map(|record| (millions(record), (curve.value)(record).unwrap_or(f64::NAN)))
+            .collect();
+        let spread = smooth(&points, POINTS);
+        chart.bands.push(Band {
+            colour,
+            points: spread.band,
+        });
+        chart.lines.push(Line {
+            label: if named { name.clone() } else { String::new() },
+            colour,
+            points: spread.mean,
+        });
+        chart.marks.extend(switch(records).map(|x| Mark {
+            x,
+            label: "Phase II".into(),
+            colour,
+        }));
+    }
+    chart
+}
+
+fn millions(record: &Record) -> f64 {
+    record.samples as f64 / 1e6
+}
+
+/// Where Phase II began, if it did.
+fn switch(records: &[Record]) -> Option<f64> {
+    let second = |record: &&Record| record.phase == Some(2);
+    records.iter().find(second).map(millions)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    /// A run whose iterations 3 and 4 are of Phase II, and whose iteration 2 was refused.
+    fn run(runs: &std::path::Path, name: &str) -> Folder {
+        let folder = Folder::create(runs, name).unwrap();
+        std::fs::write(folder.config_path(), "").unwrap();
+        let mut metrics = run::Metrics::open(&folder.metrics_path()).unwrap();
+        for iteration in 1..=4_u64 {
+            let samples = 1_000_000 * iteration;
+            let record = if iteration == 2 {
+                json!({ "iteration": 2, "samples": samples, "fault": "loss" })
+            } else {
+                let phase = if iteration < 3 { 1 } else { 2 };
+                json!({ "iteration": iteration, "samples": samples, "phase": phase,
+                        "episode_length": null, "rmse": 0.5, "hip_correlation": -0.5 })
+            };
+            metrics.append(&record).unwrap();
+        }
+        folder
+    }
+
+    #[test]
+    fn phase_two_is_marked_and_a_refused_iteration_is_a_gap() {
+        let runs = tempfile::tempdir().unwrap();
+        let records = records(&run(runs.path(), "walk")).unwrap();
+        assert_eq!(switch(&records), Some(3.0));
+        assert_eq!(switch(&records[..2]), None);
+        let all = [("walk".to_owned(), records)];
+        let chart = chart(&all, &CURVES[4], true);
+        let errors: Vec<_> = chart.lines[0].points.iter().map(|point| point.1).collect();
+        assert!(errors[1].is_nan() && errors[0] == 0.5 && errors[3] == 0.5);
+        assert_eq!(chart.marks.len(), 1);
+    }
+
+    #[test]
+    fn curves_of_several_runs_are_written_to_one_file() {
+        let runs = tempfile::tempdir().unwrap();
+        run(runs.path(), "one");
+        run(runs.path(), "two");
+        let plot = Plot {
+            runs: vec!["one".into(), "two".into()],
+            place: Place {
+                runs_dir: runs.path().to_owned(),
+            },
+            out: None,
+        };
+        plot.run().unwrap();
+        let svg = std::fs::read_to_string(runs.path().join("one/curves.svg")).unwrap();
+        for text in [
+            "Learning: one, two",
+            "Phase II",
+            "hip correlation",
+            "million samples",
+        ] {
+            assert!(svg.contains(text), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_run_without_iterations_is_refused_in_words() {
+        let runs = tempfile::tempdir().unwrap();
+        let folder = Folder::create(runs.path(), "new").unwrap();
+        let error = records(&folder).unwrap_err().to_string();
+        assert!(error.contains("`new`") && error.contains("no iteration yet"));
+    }
+}
