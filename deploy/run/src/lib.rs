@@ -29,4 +29,5 @@ pub use checkpoint::{Checkpoint, CheckpointError, Checkpoints};
 pub use config::{Config, ConfigError};
 pub use folder::{Folder, FolderError, Lock};
 pub use metrics::{Metrics, MetricsError};
+pub use replace::replace_file;
 pub use sections::{Deadlines, FleetConfig, Mode, RunConfig};
