@@ -1,4 +1,4 @@
-//! `ampco`: the one command. Trains, joins, looks, evaluates, measures.
+//! `ampco`: the one command. Trains, joins, looks, evaluates, imports motion, measures.
 //!
 //! Each subcommand is a module with its arguments and its `run`; this file only chooses.
 
@@ -11,6 +11,7 @@ mod console;
 mod evaluate;
 mod failure;
 mod figures;
+mod motions;
 mod place;
 mod presets;
 mod resolve;
@@ -37,6 +38,7 @@ Examples:
   ampco status                                    the newest run: how it is going
   ampco actor --run walk                          lend another core to a running group
   ampco evaluate walk --command 0.8,0,0 --json    how well the policy walks
+  ampco motions import 02_01.amc --out walks      motion capture, onto the robot
   ampco bench sim                                 how fast this machine simulates
 
 A run lives in runs/<name>/: config.toml (every value, defaults included), metrics.jsonl (a line per
@@ -56,6 +58,7 @@ enum Command {
     Actor(actor::AddActor),
     Status(status::Status),
     Evaluate(evaluate::Evaluate),
+    Motions(motions::Motions),
     Bench(bench::Bench),
 }
 
@@ -68,6 +71,7 @@ fn main() -> ExitCode {
         Command::Actor(actor) => actor.run(),
         Command::Status(status) => status.run(),
         Command::Evaluate(evaluate) => evaluate.run(),
+        Command::Motions(motions) => motions.run(),
         Command::Bench(bench) => bench.run(),
     };
     match done {

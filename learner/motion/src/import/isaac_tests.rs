@@ -70,7 +70,14 @@ pub(in crate::import) fn gym_file(frames: usize) -> Vec<u8> {
             .array(shape, values)
             .op(b"s")
     };
+    // numpy.save pickles an array of one object, whatever the object is.
     let w = Writer::new()
+        .op(b"cnumpy.core.multiarray\n_reconstruct\ncnumpy\nndarray\n")
+        .op(b"K\x00\x85C\x01b\x87R(K\x01)cnumpy\ndtype\n")
+        .text("O8")
+        .op(b"\x89\x88\x87R(K\x03")
+        .text("|")
+        .op(b"NNNtb\x89]")
         .text("collections")
         .text("OrderedDict")
         .op(&[0x93])
@@ -92,7 +99,7 @@ pub(in crate::import) fn gym_file(frames: usize) -> Vec<u8> {
         .op(&[0x88])
         .text("fps")
         .integer(60)
-        .op(b"u")
+        .op(b"uatb")
         .done();
     let header = "{'descr': '|O', 'fortran_order': False, 'shape': (), }";
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();

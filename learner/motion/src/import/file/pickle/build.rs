@@ -75,8 +75,16 @@ impl Reader<'_> {
             // (version, shape, type, Fortran order, bytes)
             (Value::Array(_), Value::Tuple(state)) if state.len() == 5 => {
                 let part = |i: usize| &self.values[state[i]];
+                // numpy.save wraps an object into an array of one.
+                if let (Value::Type(kind, _), Value::List(items)) = (part(2), part(4)) {
+                    let ("O8" | "O", [only]) = (kind.as_str(), items.as_slice()) else {
+                        return Err("an array of many objects".into());
+                    };
+                    self.values[object] = self.values[*only].clone();
+                    return Ok(());
+                }
                 let (Value::Type(kind, big), Value::Bytes(bytes)) = (part(2), part(4)) else {
-                    return Err("an array of objects".into());
+                    return Err("an array without bytes".into());
                 };
                 let fortran = *part(3) == Value::Number(1.0);
                 array(self.shape(part(1))?, numbers(kind, *big, bytes)?, fortran)?
