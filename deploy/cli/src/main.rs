@@ -1,4 +1,4 @@
-//! `ampco`: the one command. Trains, joins, looks, evaluates, measures.
+//! `ampco`: the one command. Trains, joins, looks, evaluates, imports motion, measures.
 //!
 //! Each subcommand is a module with its arguments and its `run`; this file only chooses.
 
@@ -12,6 +12,7 @@ mod engine;
 mod evaluate;
 mod failure;
 mod figures;
+mod motions;
 mod place;
 mod plot;
 mod presets;
@@ -41,6 +42,7 @@ Examples:
   ampco evaluate walk --command 0.8,0,0 --json    how well the policy walks
   ampco evaluate walk --suite standard            everything it should be able to do, as a report
   ampco plot walk                                 its learning curves, as SVG
+  ampco motions import 02_01.amc --out walks      motion capture, onto the robot
   ampco bench sim                                 how fast this machine simulates
 
 A run lives in runs/<name>/: config.toml (every value, defaults included), metrics.jsonl (a line per
@@ -61,6 +63,7 @@ enum Command {
     Status(status::Status),
     Evaluate(evaluate::Evaluate),
     Plot(plot::Plot),
+    Motions(motions::Motions),
     Bench(bench::Bench),
 }
 
@@ -74,6 +77,7 @@ fn main() -> ExitCode {
         Command::Status(status) => status.run(),
         Command::Evaluate(evaluate) => evaluate.run(),
         Command::Plot(plot) => plot.run(),
+        Command::Motions(motions) => motions.run(),
         Command::Bench(bench) => bench.run(),
     };
     match done {

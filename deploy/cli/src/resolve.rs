@@ -79,8 +79,10 @@ pub(crate) fn anchor_files(config: &mut Config, preset: Option<(&str, &Path)>) -
         _ => &here,
     };
     for clip in &mut clips {
-        if let Some(Value::String(file)) = clip.get_mut("file") {
-            *file = folder.join(&*file).to_string_lossy().into_owned();
+        for key in ["file", "folder"] {
+            if let Some(Value::String(path)) = clip.get_mut(key) {
+                *path = folder.join(&*path).to_string_lossy().into_owned();
+            }
         }
     }
     config.put("motion.clips", clips, &origin);

@@ -1,12 +1,15 @@
 //! Replacing a file so that a reader, or the next start after a crash, sees the old one or the new one and nothing else.
 //!
-//! Separate because configuration, metrics and checkpoints all need it and it is easy to get half right.
+//! Separate because configuration, metrics, checkpoints and imported motion all need it and it is easy to get half right.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::Path;
 
 /// Writes `bytes` beside `path`, makes them durable, and renames them over it.
+///
+/// # Errors
+/// What the file system refused; the old file is then untouched.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let folder = path
         .parent()

@@ -39,6 +39,30 @@ impl Clip {
         self.frames.len().saturating_sub(usize::from(!self.cyclic))
     }
 
+    /// A cyclic clip repeated for at least so many seconds, going on along its command straight
+    /// ahead; any other clip as it is.
+    pub fn unrolled(&self, seconds: f64) -> Self {
+        let cycles = if self.cyclic {
+            (seconds / self.seconds()).ceil().max(1.0) as usize
+        } else {
+            1
+        };
+        let way = self.command[0] * self.seconds() as f32;
+        let ahead = |cycle: usize| {
+            self.frames.iter().map(move |frame| {
+                let mut frame = *frame;
+                frame.position.x += way * cycle as f32;
+                frame
+            })
+        };
+        Self {
+            frames: (0..cycles).flat_map(ahead).collect(),
+            cyclic: false,
+            name: self.name.clone(),
+            ..*self
+        }
+    }
+
     /// The clip seen in a mirror: left and right swapped.
     pub fn mirrored(&self) -> Self {
         Self {
@@ -47,5 +71,23 @@ impl Clip {
             command: mirror_command(self.command),
             ..*self
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::gait;
+
+    #[test]
+    fn unrolling_goes_on_without_a_jump() {
+        let walk = gait::walk(1.0).unwrap();
+        let long = walk.unrolled(5.0);
+        assert!(long.seconds() > 4.95 && !long.cyclic);
+        assert_eq!(long.frames[..walk.frames.len()], walk.frames);
+        for pair in long.frames.windows(2) {
+            let step = (pair[1].position - pair[0].position).norm();
+            assert!((step - 0.02).abs() < 0.01, "{step}"); // 1 m/s at 50 Hz, and some bounce
+        }
+        assert_eq!(long.unrolled(99.0), long);
     }
 }

@@ -17,9 +17,12 @@ pub struct MotionConfig {
     pub clips: Vec<ClipConfig>,
     /// Whether every clip is also shown mirrored, left for right. Default: true.
     pub mirror: bool,
+    /// Whether transitions are drawn so that every quarter of a metre per second has the same share,
+    /// however much motion there is at it. Default: false, then the weights of clips decide.
+    pub stratify: bool,
 }
 
-/// One clip: a built-in gait or a file, never both.
+/// One clip or a folder of them: a built-in gait, a file or a folder, never two of these.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ClipConfig {
@@ -29,13 +32,18 @@ pub struct ClipConfig {
     /// Speed of a built-in gait, m/s: 0.4–1.8 walking, 1.8–2.7 running; none for standing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed: Option<f64>,
-    /// A CSV file: x y z (m), quaternion, 23 joints (rad) in robot order or named by a header.
+    /// A file in any format that `ampco motions import` reads.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<PathBuf>,
-    /// Frames per second of the file.
+    /// A folder of tables (`*.csv`), as `ampco motions import` writes it; the longer a clip in it, the
+    /// greater its share of the weight.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub folder: Option<PathBuf>,
+    /// Frames per second of the file or of those in the folder. Default: what they say.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fps: Option<f64>,
-    /// Order of the quaternion in a file without header. Default: w first.
+    /// Order of the quaternion in a file without header. Default: the one in which the robot stands
+    /// upright and its feet slip least.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quaternion: Option<QuaternionOrder>,
     /// Whether a file's motion is moved up or down until its feet are on the ground. Default: true.
@@ -68,6 +76,27 @@ pub enum QuaternionOrder {
     Xyzw,
 }
 
+impl std::fmt::Display for QuaternionOrder {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Wxyz => "wxyz",
+            Self::Xyzw => "xyzw",
+        })
+    }
+}
+
+impl std::str::FromStr for QuaternionOrder {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "wxyz" => Ok(Self::Wxyz),
+            "xyzw" => Ok(Self::Xyzw),
+            _ => Err("give wxyz or xyzw".into()),
+        }
+    }
+}
+
 impl Default for MotionConfig {
     fn default() -> Self {
         let walk = |speed, weight| ClipConfig {
@@ -85,6 +114,7 @@ impl Default for MotionConfig {
                 walk(1.2, 1.0),
             ],
             mirror: true,
+            stratify: false,
         }
     }
 }
@@ -95,6 +125,7 @@ impl Default for ClipConfig {
             gait: None,
             speed: None,
             file: None,
+            folder: None,
             fps: None,
             quaternion: None,
             ground: None,
@@ -127,18 +158,23 @@ impl ClipConfig {
             let remedy = "write a number above 0, at most 1000000; remove the clip to leave it out";
             return Err(wrong(field("weight"), self.weight, remedy));
         }
-        match (self.gait, &self.file) {
-            (Some(gait), None) => self.validate_gait(gait, &field),
-            (None, Some(_)) => self.validate_file(&field),
-            (Some(_), Some(_)) => Err(wrong(
+        match (self.gait, &self.file, &self.folder) {
+            (Some(gait), None, None) => self.validate_gait(gait, &field),
+            (None, Some(_), None) | (None, None, Some(_)) => self.validate_file(&field),
+            (Some(_), Some(_), _) => Err(wrong(
                 field("file"),
                 "given beside gait",
                 "keep one of the two",
             )),
-            (None, None) => Err(wrong(
+            (_, _, Some(_)) => Err(wrong(
+                field("folder"),
+                "given beside gait or file",
+                "keep one of the two",
+            )),
+            (None, None, None) => Err(wrong(
                 format!("clips[{index}]"),
                 "{}",
-                "give gait = \"stand\", \"walk\" or \"run\", or file = \"….csv\" with fps",
+                "give gait = \"stand\", \"walk\" or \"run\", or file = \"…\", or folder = \"…\"",
             )),
         }
     }
@@ -190,12 +226,12 @@ impl ClipConfig {
             ));
         }
         match self.fps {
-            Some(fps) if (1.0..=10_000.0).contains(&fps) => Ok(()),
-            fps => Err(wrong(
+            Some(fps) if !(1.0..=10_000.0).contains(&fps) => Err(wrong(
                 field("fps"),
-                fps.map_or_else(|| "missing".into(), |fps| fps.to_string()),
+                fps,
                 "write the frames per second of the file, from 1 to 10000",
             )),
+            _ => Ok(()),
         }
     }
 }
@@ -263,8 +299,8 @@ mod tests {
                 ["clips[0].weight", "-1", "above 0"],
             ),
             (
-                "clips = [{ gait = \"stand\" }, { file = \"a.csv\" }]",
-                ["clips[1].fps", "missing", "frames per second"],
+                "clips = [{ gait = \"stand\" }, { file = \"a.csv\", folder = \"b\" }]",
+                ["clips[1].folder", "beside", "one of the two"],
             ),
             (
                 "clips = [{ file = \"a.csv\", fps = nan }]",

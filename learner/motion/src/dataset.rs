@@ -6,12 +6,13 @@
 use crate::clip::Clip;
 use crate::config::{ClipConfig, Gait, MotionConfig, wrong};
 use crate::error::MotionError;
+use crate::strata::Strata;
 use crate::{gait, import};
 use g1::observation::features;
 use g1::{FEATURES, RobotState};
 use rand::{Rng, RngExt};
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Numbers in a transition: the features of two successive steps.
 pub const TRANSITION: usize = 2 * FEATURES;
@@ -27,6 +28,8 @@ pub struct Dataset {
     /// Features of all frames of all clips, and where each clip's begin (in frames).
     features: Vec<f32>,
     starts: Vec<usize>,
+    /// Shares of transitions, if every speed counts alike.
+    strata: Option<Strata>,
 }
 
 impl Dataset {
@@ -39,14 +42,28 @@ impl Dataset {
         config.validate()?;
         let mut clips = Vec::new();
         for (index, source) in config.clips.iter().enumerate() {
-            let mut clip = load_clip(source, index, base_dir)?;
-            if config.mirror {
-                clip.weight /= 2.0;
-                clips.push(clip.mirrored());
+            for mut clip in load_clips(source, index, base_dir)? {
+                if config.mirror {
+                    clip.weight /= 2.0;
+                    clips.push(clip.mirrored());
+                }
+                clips.push(clip);
             }
-            clips.push(clip);
         }
-        Ok(Self::of(clips))
+        let data = Self::of(clips);
+        Ok(if config.stratify {
+            data.stratified()
+        } else {
+            data
+        })
+    }
+
+    /// The same clips, drawn so that every speed has the same share.
+    pub fn stratified(self) -> Self {
+        Self {
+            strata: Some(Strata::of(&self.clips)),
+            ..self
+        }
     }
 
     /// A dataset of clips already at hand.
@@ -59,6 +76,7 @@ impl Dataset {
             cumulative_weights: Vec::with_capacity(clips.len()),
             features: Vec::new(),
             starts: Vec::with_capacity(clips.len()),
+            strata: None,
             clips,
         };
         let (mut weight, mut frames) = (0.0, 0);
@@ -90,10 +108,20 @@ impl Dataset {
 
     /// Every frame with its clip's command and its chance of being drawn, relative to the others.
     pub fn frames(&self) -> impl Iterator<Item = (&RobotState, [f32; 3], f32)> {
-        self.clips.iter().flat_map(|clip| {
-            let weight = clip.weight / clip.frames.len() as f32;
-            clip.frames.iter().map(move |f| (f, clip.command, weight))
-        })
+        self.clips
+            .iter()
+            .enumerate()
+            .flat_map(move |(index, clip)| {
+                let even = clip.weight / clip.frames.len() as f32;
+                clip.frames.iter().enumerate().map(move |(i, f)| {
+                    let strata = self.strata.as_ref();
+                    (
+                        f,
+                        clip.command,
+                        strata.map_or(even, |strata| strata.share(index, i)),
+                    )
+                })
+            })
     }
 
     /// Draws a transition: the features of a step and of the next, 53 and 53 numbers. In a cyclic
@@ -103,9 +131,14 @@ impl Dataset {
     /// If `out` is not 106 long.
     pub fn sample_transition(&self, rng: &mut impl Rng, out: &mut [f32]) {
         assert_eq!(out.len(), TRANSITION, "a transition has 106 numbers");
-        let index = self.sample_clip(rng);
+        let (index, i) = match &self.strata {
+            Some(strata) => strata.draw(rng),
+            None => {
+                let index = self.sample_clip(rng);
+                (index, rng.random_range(0..self.clips[index].transitions()))
+            }
+        };
         let clip = &self.clips[index];
-        let i = rng.random_range(0..clip.transitions());
         let next = (i + 1) % clip.frames.len();
         let row = |i: usize| {
             let at = (self.starts[index] + i) * FEATURES;
@@ -117,8 +150,14 @@ impl Dataset {
 
     /// Draws a frame with its clip's command, to start an episode from.
     pub fn sample_frame(&self, rng: &mut impl Rng) -> (&RobotState, [f32; 3]) {
-        let clip = &self.clips[self.sample_clip(rng)];
-        let i = rng.random_range(0..clip.frames.len());
+        let (index, i) = match &self.strata {
+            Some(strata) => strata.draw(rng),
+            None => {
+                let index = self.sample_clip(rng);
+                (index, rng.random_range(0..self.clips[index].frames.len()))
+            }
+        };
+        let clip = &self.clips[index];
         (&clip.frames[i], clip.command)
     }
 
@@ -150,9 +189,20 @@ impl Dataset {
     }
 }
 
-fn load_clip(source: &ClipConfig, index: usize, base_dir: &Path) -> Result<Clip, MotionError> {
-    let clip = match (source.gait, &source.file) {
-        (Some(gait), _) => {
+/// The clips of a source; those of a folder share its weight by their duration.
+fn load_clips(
+    source: &ClipConfig,
+    index: usize,
+    base_dir: &Path,
+) -> Result<Vec<Clip>, MotionError> {
+    let options = import::Options {
+        fps: source.fps,
+        quaternion: source.quaternion,
+        ground: source.ground.unwrap_or(true),
+        ..import::Options::default()
+    };
+    let mut clips = match (source.gait, &source.file, &source.folder) {
+        (Some(gait), ..) => {
             let speed = source.speed.unwrap_or(0.0);
             let made = match gait {
                 Gait::Stand => Some(gait::stand()),
@@ -160,22 +210,50 @@ fn load_clip(source: &ClipConfig, index: usize, base_dir: &Path) -> Result<Clip,
                 Gait::Run => gait::run(speed),
             };
             let impossible = "no pose of the legs makes this gait; choose another speed";
-            made.ok_or_else(|| wrong(format!("clips[{index}].speed"), speed, impossible))?
+            vec![made.ok_or_else(|| wrong(format!("clips[{index}].speed"), speed, impossible))?]
         }
-        (None, Some(file)) => {
-            let options = import::Options {
-                fps: source.fps.unwrap_or(50.0),
-                quaternion: source.quaternion.unwrap_or_default(),
-                ground: source.ground.unwrap_or(true),
-            };
-            import::load(&base_dir.join(file), &options)?
+        (None, Some(file), _) => vec![import::load(&base_dir.join(file), &options)?],
+        (None, None, Some(folder)) => tables(&base_dir.join(folder))?
+            .iter()
+            .map(|path| import::load(path, &options))
+            .collect::<Result<_, _>>()?,
+        (None, None, None) => {
+            return Err(wrong(
+                format!("clips[{index}]"),
+                "{}",
+                "give gait, file or folder",
+            ));
         }
-        (None, None) => return Err(wrong(format!("clips[{index}]"), "{}", "give gait or file")),
     };
-    Ok(Clip {
-        weight: source.weight,
-        ..clip
-    })
+    let seconds: f64 = clips.iter().map(Clip::seconds).sum();
+    for clip in &mut clips {
+        clip.weight = source.weight * (clip.seconds() / seconds) as f32;
+    }
+    Ok(clips)
+}
+
+/// The tables in a folder, sorted by name: the order must not depend on the file system.
+fn tables(folder: &Path) -> Result<Vec<PathBuf>, MotionError> {
+    let read = |source| MotionError::Read {
+        path: folder.into(),
+        source,
+    };
+    let mut paths = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(read)? {
+        let path = entry.map_err(read)?.path();
+        if path.extension().is_some_and(|extension| extension == "csv") {
+            paths.push(path);
+        }
+    }
+    if paths.is_empty() {
+        return Err(MotionError::File {
+            path: folder.into(),
+            problem: "holds no .csv file".into(),
+            remedy: "fill it with ampco motions import FILE… --out FOLDER".into(),
+        });
+    }
+    paths.sort();
+    Ok(paths)
 }
 
 #[cfg(test)]
@@ -264,6 +342,36 @@ mod tests {
         };
         let usual = (0..n - 1).map(largest).fold(0.0, f32::max);
         assert!(largest(n - 1) <= usual, "{} after {usual}", largest(n - 1));
+    }
+
+    #[test]
+    fn a_folder_shares_its_weight_by_duration() {
+        let folder = tempfile::tempdir().unwrap();
+        let config = |text: &str| toml::from_str::<MotionConfig>(text).unwrap();
+        let named = config("mirror = false\nclips = [{ folder = \"set\", weight = 2.0 }]");
+        assert!(Dataset::load(&named, folder.path()).is_err()); // not there
+        let set = folder.path().join("set");
+        std::fs::create_dir(&set).unwrap();
+        let message = Dataset::load(&named, folder.path())
+            .unwrap_err()
+            .to_string();
+        assert!(
+            message.contains("no .csv") && message.contains("motions import"),
+            "{message}"
+        );
+        let mut walk = gait::walk(1.0).unwrap();
+        std::fs::write(set.join("b.csv"), crate::export::to_csv(&walk, &[])).unwrap();
+        let whole = walk.frames.len();
+        walk.frames.truncate(whole / 2);
+        std::fs::write(set.join("a.csv"), crate::export::to_csv(&walk, &[])).unwrap();
+        std::fs::write(set.join("notes.json"), "{}").unwrap();
+        let data = Dataset::load(&named, folder.path()).unwrap();
+        let names: Vec<&str> = data.clips().iter().map(|c| c.name.as_str()).collect();
+        assert_eq!(names, ["a", "b"]);
+        let weights: Vec<f32> = data.clips().iter().map(|c| c.weight).collect();
+        assert!((weights[0] + weights[1] - 2.0).abs() < 1e-6);
+        let shares = (whole / 2 - 1) as f32 / (whole - 1) as f32;
+        assert!((weights[0] / weights[1] - shares).abs() < 1e-4);
     }
 
     #[test]

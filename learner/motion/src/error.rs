@@ -40,6 +40,20 @@ pub enum MotionError {
         /// What to do.
         remedy: String,
     },
+    /// A frame of a file without lines cannot be used.
+    #[error("{} frame {frame}, {field}: {problem}; {remedy}", path.display())]
+    Frame {
+        /// The file.
+        path: PathBuf,
+        /// Frame, counted from 1.
+        frame: usize,
+        /// The array or joint, and which of its numbers.
+        field: String,
+        /// What is wrong.
+        problem: String,
+        /// What to do.
+        remedy: String,
+    },
     /// A file as a whole cannot be used.
     #[error("{}: {problem}; {remedy}", path.display())]
     File {

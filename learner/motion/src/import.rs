@@ -1,29 +1,76 @@
 //! Motion from files, on the same footing as the built-in gait.
 //!
-//! Separate because files are not to be trusted: everything is checked before it is a [`Clip`].
-//! The way: `import/csv.rs` reads rows, `import/resample.rs` brings them to 50 Hz, puts the feet on
-//! the ground and differentiates.
+//! Separate because files are not to be trusted: everything is checked before it is a [`Clip`]. The
+//! way: `format.rs` tells the format, a file per format reads it, and then either the robot's rows
+//! (`resample.rs`) or a human's joints (`human.rs`, then the crate `retarget`) become 50 Hz.
 
+mod amass;
+mod amc;
+mod bvh;
 mod csv;
+mod file;
+mod format;
+mod human;
+mod isaac;
+mod joints;
 mod resample;
+mod robot;
+mod upright;
+
+pub use format::Format;
 
 use crate::clip::Clip;
 use crate::config::QuaternionOrder;
 use crate::error::MotionError;
+use file::File;
 use g1::JOINTS;
+use human::Joints;
 use nalgebra::{UnitQuaternion, Vector3};
-use std::io::{self, Read};
-use std::path::Path;
+use retarget::Report;
+use std::path::{Path, PathBuf};
 
-/// How a file is to be understood.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What a file does not say, or says wrongly.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Options {
+    /// Frames per second; over what the file says.
+    pub fps: Option<f64>,
+    /// The format, instead of the one that the content tells.
+    pub format: Option<Format>,
+    /// Order of the robot's quaternions, instead of what its posture tells.
+    pub quaternion: Option<QuaternionOrder>,
+    /// Skeleton of an Acclaim motion, instead of the one beside it.
+    pub skeleton: Option<PathBuf>,
+    /// Whether a robot's motion is moved up or down until the feet are on the ground.
+    pub ground: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            fps: None,
+            format: None,
+            quaternion: None,
+            skeleton: None,
+            ground: true,
+        }
+    }
+}
+
+/// A clip and how it came about.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Imported {
+    /// The clip at 50 Hz.
+    pub clip: Clip,
+    /// The format it was in.
+    pub format: Format,
+    /// Frames in the file.
+    pub frames: usize,
     /// Frames per second of the file.
     pub fps: f64,
-    /// Order of the quaternion when there is no header to tell.
-    pub quaternion: QuaternionOrder,
-    /// Whether to move the motion up or down until the feet are on the ground.
-    pub ground: bool,
+    /// What was decided that the file does not say, a sentence each.
+    pub decisions: Vec<String>,
+    /// The account of retargeting, if a human was in the file.
+    pub retargeting: Option<Report>,
 }
 
 /// A row of a file: place and posture, no velocities yet.
@@ -34,26 +81,179 @@ struct Row {
     joints: [f64; JOINTS],
 }
 
-/// Largest file that is read, bytes: three hours at 120 frames a second are about 400 MB.
-const LARGEST: u64 = 512 << 20;
+/// What a format's reader gives.
+enum Motion {
+    /// The G1; its quaternions are sure, or to be decided with this as usual order.
+    Robot(Vec<Row>, Sure),
+    Human(Joints),
+}
 
-/// Reads a CSV file of motion.
+/// Whether quaternions are in a known order.
+enum Sure {
+    Yes,
+    No { usual: Option<QuaternionOrder> },
+}
+
+/// Reads a file of motion in any known format; see [`import`].
 ///
 /// # Errors
-/// A missing, too large or unreadable file, or the first line that cannot be used.
+/// As [`import`].
 pub fn load(path: &Path, options: &Options) -> Result<Clip, MotionError> {
-    let read = |source| MotionError::Read {
-        path: path.into(),
-        source,
-    };
-    let mut bytes = Vec::new();
-    std::fs::File::open(path)
-        .and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes))
-        .map_err(read)?;
-    if bytes.len() as u64 > LARGEST {
-        let large = io::Error::new(io::ErrorKind::FileTooLarge, "larger than 512 MiB");
-        return Err(read(large));
-    }
-    let rows = csv::parse(&String::from_utf8_lossy(&bytes), path, options.quaternion)?;
-    resample::clip(&rows, path, options)
+    import(path, options).map(|imported| imported.clip)
 }
+
+/// Reads a file of motion in any known format and says what was done.
+///
+/// # Errors
+/// A missing, too large or unreadable file, or the first thing in it that cannot be used, with file,
+/// frame or line, field and remedy.
+pub fn import(path: &Path, options: &Options) -> Result<Imported, MotionError> {
+    let bytes = file::read(path)?;
+    let file = File {
+        path,
+        bytes: &bytes,
+    };
+    let mut decisions = Vec::new();
+    let format = match options.format {
+        Some(format) => format,
+        None => {
+            let (format, told) = format::detect(&file)?;
+            decisions.push(format!("{format}: {told}"));
+            format
+        }
+    };
+    let (motion, stated) = read(&file, format, options, &mut decisions)?;
+    let fps = rate(&file, options.fps, stated)?;
+    let (frames, clip, retargeting) = match motion {
+        Motion::Robot(rows, sure) => {
+            let rows = oriented(&file, rows, sure, fps, options, &mut decisions)?;
+            (
+                rows.len(),
+                resample::clip(&file, &rows, fps, options.ground)?,
+                None,
+            )
+        }
+        Motion::Human(joints) => {
+            resample::check_duration(&file, joints.frames.len(), fps)?;
+            let capture = human::capture(&file, &joints, fps, &mut decisions)?;
+            let (postures, report) = retarget::retarget(&capture);
+            let rows: Vec<Row> = postures.iter().map(row).collect();
+            (
+                joints.frames.len(),
+                resample::finished(path, &rows),
+                Some(report),
+            )
+        }
+    };
+    Ok(Imported {
+        clip,
+        format,
+        frames,
+        fps,
+        decisions,
+        retargeting,
+    })
+}
+
+/// The motion of a file and its frames per second, if it says them.
+fn read(
+    file: &File<'_>,
+    format: Format,
+    options: &Options,
+    decisions: &mut Vec<String>,
+) -> Result<(Motion, Option<f64>), MotionError> {
+    let human = |(joints, fps)| (Motion::Human(joints), fps);
+    Ok(match format {
+        Format::Amass | Format::Smplx => human(amass::read(file, decisions)?),
+        Format::Bvh => {
+            let (joints, fps) = bvh::read(file)?;
+            (Motion::Human(joints), Some(fps))
+        }
+        Format::Amc => {
+            let joints = amc::read(file, options.skeleton.as_deref(), decisions)?;
+            if options.fps.is_none() {
+                decisions.push(format!(
+                    "{} frames a second, as in the CMU collection",
+                    amc::USUAL_FPS
+                ));
+            }
+            (Motion::Human(joints), Some(amc::USUAL_FPS))
+        }
+        Format::Csv => {
+            let table = csv::parse(file)?;
+            let sure = if table.named {
+                Sure::Yes
+            } else {
+                Sure::No { usual: None }
+            };
+            (Motion::Robot(table.rows, sure), table.fps)
+        }
+        Format::BeyondMimic => {
+            let (rows, fps) = robot::beyond_mimic(file, decisions)?;
+            (Motion::Robot(rows, Sure::Yes), fps)
+        }
+        Format::IsaacLab => match isaac::lab(file, decisions)? {
+            (isaac::Lab::Robot(rows), fps) => (Motion::Robot(rows, Sure::Yes), fps),
+            (isaac::Lab::Humanoid(joints), fps) => (Motion::Human(joints), fps),
+        },
+        Format::IsaacGym => human(isaac::gym(file, decisions)?),
+        Format::Gmr => {
+            let (rows, fps) = robot::gmr(file, decisions)?;
+            let usual = Some(QuaternionOrder::Xyzw);
+            (Motion::Robot(rows, Sure::No { usual }), fps)
+        }
+    })
+}
+
+/// The file's rate, or the one that the user gives.
+fn rate(file: &File<'_>, given: Option<f64>, stated: Option<f64>) -> Result<f64, MotionError> {
+    match given.or(stated) {
+        Some(fps) if (1.0..=10_000.0).contains(&fps) => Ok(fps),
+        Some(fps) => Err(file.unusable(
+            &format!("has a rate of {fps} frames a second"),
+            "give one from 1 to 10000: fps = …, on the command line --fps",
+        )),
+        None => Err(file.unusable(
+            "does not say its frames per second",
+            "say them: fps = 30, on the command line --fps 30 (Unitree's tables have 30)",
+        )),
+    }
+}
+
+/// Rows with their quaternions in the right order.
+fn oriented(
+    file: &File<'_>,
+    rows: Vec<Row>,
+    sure: Sure,
+    fps: f64,
+    options: &Options,
+    decisions: &mut Vec<String>,
+) -> Result<Vec<Row>, MotionError> {
+    let Sure::No { usual } = sure else {
+        return Ok(rows);
+    };
+    let order = match options.quaternion {
+        Some(order) => order,
+        None => {
+            let (order, told) = upright::decide(file, &rows, fps, usual)?;
+            decisions.push(told);
+            order
+        }
+    };
+    Ok(match order {
+        QuaternionOrder::Wxyz => rows,
+        QuaternionOrder::Xyzw => upright::reread(&rows),
+    })
+}
+
+fn row(posture: &retarget::Posture) -> Row {
+    Row {
+        position: posture.base.translation.vector,
+        orientation: posture.base.rotation,
+        joints: posture.joints,
+    }
+}
+
+#[cfg(test)]
+#[path = "import/import_tests.rs"]
+mod tests;

@@ -4,68 +4,104 @@
 //!
 //! Columns: x y z (m), quaternion, joints (rad). With a header they are found by name in any order
 //! (`x y z qw qx qy qz` and joint names with or without `_joint`; the six joints that only the
-//! 29-joint robot has are passed over). Without one there are 30 columns in robot order, or 36 in
-//! the order of the 29-joint robot.
+//! 29-joint robot has are passed over; `time` in s or a counting `frame` is checked to be even).
+//! Without one there are 30 columns in robot order, or 36 in the order of the 29-joint robot. BONES-SEED
+//! tables (`root_translateX` in cm, `root_rotateX` and joints in degrees) are known by their header. A
+//! comment `# fps = 50` says the rate.
+
+mod layout;
 
 use super::Row;
-use crate::config::QuaternionOrder;
+use super::file::File;
 use crate::error::MotionError;
-use g1::{JOINT_TABLE, JOINTS};
+use layout::{FIELDS, Layout};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use std::path::Path;
 
-/// Numbers of a row in our order: x y z, qw qx qy qz, 23 joints.
-const FIELDS: usize = 7 + JOINTS;
-const BASE: [&str; 7] = ["x", "y", "z", "qw", "qx", "qy", "qz"];
-/// Where the 29-joint robot has joints that the 23-joint robot lacks.
-const DROPPED: [usize; 6] = [13, 14, 20, 21, 27, 28];
-const DROPPED_NAMES: [&str; 6] = [
-    "waist_roll",
-    "waist_pitch",
-    "left_wrist_pitch",
-    "left_wrist_yaw",
-    "right_wrist_pitch",
-    "right_wrist_yaw",
-];
-
-/// Which column each field is in, and how many columns a line must have.
-struct Layout {
-    column: [usize; FIELDS],
-    width: usize,
+/// What a file holds.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Table {
+    /// The rows; without a header quaternions are read with the scalar first.
+    pub(super) rows: Vec<Row>,
+    /// Whether a header names the columns.
+    pub(super) named: bool,
+    /// Frames per second, if the file says them.
+    pub(super) fps: Option<f64>,
 }
 
-/// The rows of a table. `path` is named in errors only.
-pub(super) fn parse(
-    text: &str,
-    path: &Path,
-    quaternion: QuaternionOrder,
-) -> Result<Vec<Row>, MotionError> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+/// Reads a table.
+pub(super) fn parse(file: &File<'_>) -> Result<Table, MotionError> {
+    let text = file.text();
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let mut lines = text
         .lines()
         .enumerate()
         .map(|(i, line)| Line {
-            path,
+            path: file.path,
             number: i + 1,
             text: line,
         })
         .filter(|line| !line.text.trim().is_empty() && !line.text.trim_start().starts_with('#'))
         .peekable();
     let Some(first) = lines.peek() else {
-        return Err(MotionError::File {
-            path: path.into(),
-            problem: "holds no frames".into(),
-            remedy: "export the motion again".into(),
-        });
+        return Err(file.unusable("holds no frames", "export the motion again"));
     };
-    let layout = if first.is_header() {
+    let named = first.is_header();
+    let layout = if named {
         let layout = first.named_layout()?;
         lines.next();
         layout
     } else {
-        first.plain_layout(quaternion)?
+        first.plain_layout()?
     };
-    lines.map(|line| line.row(&layout)).collect()
+    let (mut rows, mut times) = (Vec::new(), Vec::new());
+    for line in lines {
+        let (row, time) = line.row(&layout)?;
+        rows.push(row);
+        times.extend(time.map(|time| (line, time)));
+    }
+    if rows.is_empty() {
+        return Err(file.unusable("holds no frames", "export the motion again"));
+    }
+    let step = even_step(&times)?;
+    let timed = step.filter(|_| layout.in_seconds).map(|step| 1.0 / step);
+    Ok(Table {
+        rows,
+        named,
+        fps: stated_fps(text).or(timed),
+    })
+}
+
+/// The rate that a comment states.
+fn stated_fps(text: &str) -> Option<f64> {
+    text.lines()
+        .filter_map(|line| line.trim().strip_prefix('#')?.trim().strip_prefix("fps"))
+        .find_map(|rest| rest.trim_start_matches([' ', '=', ':']).trim().parse().ok())
+}
+
+/// The step between times, which must be the same everywhere.
+fn even_step(times: &[(Line<'_>, f64)]) -> Result<Option<f64>, MotionError> {
+    let steps: Vec<f64> = times.windows(2).map(|pair| pair[1].1 - pair[0].1).collect();
+    if steps.is_empty() {
+        return Ok(None);
+    }
+    let usual = retarget::signal::median(&mut steps.clone());
+    let uneven = steps
+        .iter()
+        .position(|step| (step - usual).abs() > 0.02 * usual.abs() || *step <= 0.0);
+    if let Some(i) = uneven {
+        let (line, time) = &times[i + 1];
+        let problem = format!(
+            "time {time} comes {:.6} after the line before, {usual:.6} elsewhere",
+            steps[i]
+        );
+        return Err(line.error(
+            None,
+            problem,
+            "frames must be evenly spaced; resample or cut the file",
+        ));
+    }
+    Ok(Some(usual))
 }
 
 #[derive(Clone, Copy)]
@@ -84,100 +120,31 @@ impl<'a> Line<'a> {
         self.cells().all(|cell| cell.parse::<f64>().is_err())
     }
 
-    fn plain_layout(&self, quaternion: QuaternionOrder) -> Result<Layout, MotionError> {
-        let width = self.cells().count();
-        let kept: Vec<usize> = match width {
-            30 => (0..JOINTS).collect(),
-            36 => (0..29).filter(|i| !DROPPED.contains(i)).collect(),
-            _ => {
-                return Err(self.error(
-                    None,
-                    format!("{width} columns"),
-                    "expected 30 (x y z, quaternion, 23 joints) or 36 (29 joints), or a header \
-                     that names them",
-                ));
-            }
-        };
-        let mut column = [0; FIELDS];
-        column[..3].copy_from_slice(&[0, 1, 2]);
-        column[3..7].copy_from_slice(match quaternion {
-            QuaternionOrder::Wxyz => &[3, 4, 5, 6],
-            QuaternionOrder::Xyzw => &[6, 3, 4, 5],
-        });
-        for (field, joint) in column[7..].iter_mut().zip(kept) {
-            *field = 7 + joint;
-        }
-        Ok(Layout { column, width })
-    }
-
-    fn named_layout(&self) -> Result<Layout, MotionError> {
-        let mut column = [None; FIELDS];
-        let mut width = 0;
-        for (i, cell) in self.cells().enumerate() {
-            width = i + 1;
-            let name = cell.trim_matches('"');
-            let short = name.strip_suffix("_joint").unwrap_or(name);
-            if DROPPED_NAMES.contains(&short) {
-                continue;
-            }
-            let joint = |j: &g1::Joint| j.name.strip_suffix("_joint") == Some(short);
-            let field = BASE
-                .iter()
-                .position(|base| *base == name)
-                .or_else(|| JOINT_TABLE.iter().position(joint).map(|j| 7 + j));
-            let Some(field) = field else {
-                return Err(self.error(
-                    Some(i + 1),
-                    format!("unknown column {name:?}"),
-                    "name columns x y z qw qx qy qz and joints as in the URDF, for example \
-                     left_knee_joint",
-                ));
-            };
-            if column[field].replace(i).is_some() {
-                return Err(self.error(
-                    Some(i + 1),
-                    format!("column {name:?} appears twice"),
-                    "keep one of them",
-                ));
-            }
-        }
-        let mut found = [0; FIELDS];
-        for (field, place) in column.iter().enumerate() {
-            found[field] = place.ok_or_else(|| {
-                let name = BASE.get(field).copied();
-                let name = name.unwrap_or_else(|| JOINT_TABLE[field - BASE.len()].name);
-                self.error(
-                    None,
-                    format!("no column {name:?}"),
-                    "add it to the header and the rows",
-                )
-            })?;
-        }
-        Ok(Layout {
-            column: found,
-            width,
-        })
-    }
-
-    fn row(&self, layout: &Layout) -> Result<Row, MotionError> {
+    /// The row and its time, if there is a column for it.
+    fn row(&self, layout: &Layout) -> Result<(Row, Option<f64>), MotionError> {
         let cells: Vec<&str> = self.cells().collect();
         if cells.len() != layout.width {
-            return Err(self.error(
-                None,
-                format!(
-                    "{} columns where the first line has {}",
-                    cells.len(),
-                    layout.width
-                ),
-                "give every line the same columns",
-            ));
+            let problem = format!(
+                "{} columns where the first line has {}",
+                cells.len(),
+                layout.width
+            );
+            return Err(self.error(None, problem, "give every line the same columns"));
         }
         let mut value = [0.0; FIELDS];
         for (field, number) in value.iter_mut().enumerate() {
-            *number = self.number(&cells, layout.column[field], field)?;
+            *number = self.number(&cells, layout, field)?;
         }
-        let [x, y, z, qw, qx, qy, qz] = std::array::from_fn(|i| value[i]);
-        let quaternion = Quaternion::new(qw, qx, qy, qz);
+        let time = match layout.time {
+            Some(column) => Some(self.finite(cells[column], column)?),
+            None => None,
+        };
+        let [x, y, z, a, b, c, d] = std::array::from_fn(|i| value[i]);
+        let quaternion = if layout.euler {
+            *UnitQuaternion::from_euler_angles(a, b, c).quaternion()
+        } else {
+            Quaternion::new(a, b, c, d)
+        };
         // Files keep about six digits; what is further off is another order, or not a quaternion.
         if (quaternion.norm() - 1.0).abs() > 0.01 {
             return Err(self.error(
@@ -186,15 +153,34 @@ impl<'a> Line<'a> {
                 "it must have length 1; check the columns",
             ));
         }
-        Ok(Row {
+        let row = Row {
             position: Vector3::new(x, y, z),
             orientation: UnitQuaternion::from_quaternion(quaternion),
             joints: std::array::from_fn(|j| value[7 + j]),
-        })
+        };
+        Ok((row, time))
     }
 
-    fn number(&self, cells: &[&str], column: usize, field: usize) -> Result<f64, MotionError> {
-        let cell = cells[column];
+    fn number(&self, cells: &[&str], layout: &Layout, field: usize) -> Result<f64, MotionError> {
+        let column = layout.column[field];
+        let number = self.finite(cells[column], column)? * layout.scale(field);
+        let fail = |problem: String, remedy: &str| self.error(Some(column + 1), problem, remedy);
+        if field < 3 && number.abs() > 1e4 {
+            return Err(fail(
+                format!("a place {number} m away"),
+                "places are in metres",
+            ));
+        }
+        if field >= 7 && number.abs() > 10.0 {
+            return Err(fail(
+                format!("a joint at {number} rad"),
+                "joints are in radians",
+            ));
+        }
+        Ok(number)
+    }
+
+    fn finite(&self, cell: &str, column: usize) -> Result<f64, MotionError> {
         let fail = |problem: String, remedy: &str| self.error(Some(column + 1), problem, remedy);
         let Ok(number) = cell.parse::<f64>() else {
             let shown: String = cell.chars().take(40).collect();
@@ -207,18 +193,6 @@ impl<'a> Line<'a> {
             return Err(fail(
                 format!("{cell} is not a finite number"),
                 "repair or cut the frame",
-            ));
-        }
-        if field < 3 && number.abs() > 1e4 {
-            return Err(fail(
-                format!("a place {number} m away"),
-                "places are in metres",
-            ));
-        }
-        if field >= 7 && number.abs() > 10.0 {
-            return Err(fail(
-                format!("a joint at {number} rad"),
-                "joints are in radians",
             ));
         }
         Ok(number)

@@ -1,9 +1,21 @@
 //! Files as people make them, good and bad.
 
 use super::*;
+use crate::import::upright::reread;
+use g1::JOINT_TABLE;
+
+const BASE: [&str; 7] = ["x", "y", "z", "qw", "qx", "qy", "qz"];
+
+fn table(text: &str) -> Result<Table, String> {
+    let file = File {
+        path: Path::new("walk.csv"),
+        bytes: text.as_bytes(),
+    };
+    parse(&file).map_err(|e| e.to_string())
+}
 
 fn read(text: &str) -> Result<Vec<Row>, String> {
-    parse(text, Path::new("walk.csv"), QuaternionOrder::Wxyz).map_err(|e| e.to_string())
+    table(text).map(|table| table.rows)
 }
 
 /// A line with numbers 0.00, 0.01, … as joints.
@@ -33,7 +45,7 @@ fn the_29_joint_robot_loses_six_joints() {
 #[test]
 fn the_scalar_of_a_quaternion_may_come_last() {
     let text = line(23).replace("1,0,0,0", "0,0,0.6,0.8");
-    let rows = parse(&text, Path::new("walk.csv"), QuaternionOrder::Xyzw).unwrap();
+    let rows = reread(&read(&text).unwrap());
     assert!((rows[0].orientation.w - 0.8).abs() < 1e-12);
     assert!((rows[0].orientation.k - 0.6).abs() < 1e-12);
 }
@@ -108,6 +120,7 @@ fn errors_name_file_line_column_and_remedy() {
             good.replace("1,0,0,0", "0,0,0,0"),
             ["line 1", "length 0.000", "length 1"],
         ),
+        (header.clone(), ["walk.csv", "no frames", "export"]),
         (
             header.replace("left_knee", "left_nee"),
             ["line 1 column 11", "\"left_nee_joint\"", "URDF"],
@@ -130,6 +143,55 @@ fn errors_name_file_line_column_and_remedy() {
             assert!(message.contains(part), "{part:?} is not in {message:?}");
         }
     }
+}
+
+fn header() -> String {
+    format!(
+        "{},{}",
+        BASE.join(","),
+        JOINT_TABLE.map(|joint| joint.name).join(",")
+    )
+}
+
+#[test]
+fn the_rate_is_in_a_comment_or_in_times() {
+    let stated = table(&format!("# a walk\n# fps = 60\n{}", line(23))).unwrap();
+    assert_eq!((stated.fps, stated.named), (Some(60.0), false));
+    let timed = |times: [f64; 4]| {
+        let rows = times.map(|t| format!("{t},{}", line(23)));
+        table(&format!("time,{}\n{}", header(), rows.concat()))
+    };
+    let even = timed([1.0, 1.02, 1.04, 1.06]).unwrap();
+    assert!((even.fps.unwrap() - 50.0).abs() < 1e-6 && even.named);
+    let message = timed([1.0, 1.02, 1.08, 1.10]).unwrap_err();
+    for part in ["line 4", "1.08", "0.060000", "evenly"] {
+        assert!(message.contains(part), "{message}");
+    }
+    // A counter says nothing of the rate, but a gap in it is one.
+    let counted = |frames: [u32; 4]| {
+        let rows = frames.map(|f| format!("{f},{}", line(23)));
+        table(&format!("Frame,{}\n{}", header(), rows.concat()))
+    };
+    assert_eq!(counted([0, 1, 2, 3]).unwrap().fps, None);
+    assert!(counted([0, 1, 2, 5]).unwrap_err().contains("line 5"));
+}
+
+#[test]
+fn centimetres_and_degrees_are_known_by_their_header() {
+    let joints = JOINT_TABLE
+        .map(|joint| format!("{}_dof", joint.name))
+        .join(",");
+    let angles: Vec<String> = (0..23).map(|i| format!("{}", 2 * i)).collect();
+    let text = format!(
+        "Frame,root_translateX,root_translateY,root_translateZ,root_rotateX,root_rotateY,root_rotateZ,{joints}\n\
+         0,100,200,75,0,0,90,{}\n",
+        angles.join(",")
+    );
+    let rows = read(&text).unwrap();
+    assert!((rows[0].position - Vector3::new(1.0, 2.0, 0.75)).norm() < 1e-12);
+    // Facing y.
+    assert!((rows[0].orientation * Vector3::x() - Vector3::y()).norm() < 1e-12);
+    assert!((rows[0].joints[22] - 44f64.to_radians()).abs() < 1e-12);
 }
 
 #[test]

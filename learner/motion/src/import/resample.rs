@@ -2,64 +2,102 @@
 //!
 //! Separate from reading because it is geometry: whatever the format, motion passes here.
 
-use super::{Options, Row};
+use super::Row;
+use super::file::File;
 use crate::clip::{Clip, FRAME_SECONDS};
 use crate::error::MotionError;
 use g1::kinematics::{forward, lowest_foot_point};
 use g1::{JOINTS, RobotState};
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
+use retarget::signal;
 use std::path::Path;
 
-/// The clip of some rows, named after the file.
-pub(super) fn clip(rows: &[Row], path: &Path, options: &Options) -> Result<Clip, MotionError> {
-    let mut frames = resampled(rows, options.fps);
-    if frames.len() < 3 {
-        let seconds = rows.len().saturating_sub(1) as f64 / options.fps;
-        return Err(MotionError::File {
-            path: path.into(),
-            problem: format!("lasts {seconds:.3} s ({} rows)", rows.len()),
-            remedy: "a clip needs at least 0.04 s; check fps or give a longer file".into(),
-        });
-    }
-    if options.ground {
+/// The clip of a robot's rows at some rate, named after the file.
+pub(super) fn clip(
+    file: &File<'_>,
+    rows: &[Row],
+    fps: f64,
+    ground: bool,
+) -> Result<Clip, MotionError> {
+    check_duration(file, rows.len(), fps)?;
+    let mut frames = resampled(rows, fps);
+    if ground {
         put_on_ground(&mut frames);
     }
-    let frames = with_velocities(&frames);
+    Ok(finished(file.path, &frames))
+}
+
+/// Refuses what is too short to have velocities.
+pub(super) fn check_duration(file: &File<'_>, frames: usize, fps: f64) -> Result<(), MotionError> {
+    if signal::resampled_length(frames, fps) >= 3 {
+        return Ok(());
+    }
+    let seconds = frames.saturating_sub(1) as f64 / fps;
+    Err(file.unusable(
+        &format!("lasts {seconds:.3} s ({frames} rows)"),
+        "a clip needs at least 0.04 s; check fps or give a longer file",
+    ))
+}
+
+/// The clip of rows at 50 Hz whose feet are on the ground.
+pub(super) fn finished(path: &Path, rows: &[Row]) -> Clip {
+    let frames = with_velocities(rows);
     let name = path
         .file_stem()
         .map_or_else(|| "file".into(), |stem| stem.to_string_lossy());
-    Ok(Clip {
+    Clip {
         name: name.into_owned(),
         command: mean_command(&frames),
         frames,
         cyclic: false,
         weight: 1.0,
-    })
+    }
 }
 
-/// Linear between rows, spherical for the orientation.
+/// Cubic splines through the rows, after a low pass of 5 ms where they are closer than that.
 fn resampled(rows: &[Row], fps: f64) -> Vec<Row> {
-    let Some(last) = rows.len().checked_sub(1) else {
-        return Vec::new();
+    const SMOOTHING_SECONDS: f64 = 0.005;
+    let count = signal::resampled_length(rows.len(), fps);
+    let series = |get: &dyn Fn(usize) -> f64| {
+        let values: Vec<f64> = (0..rows.len()).map(get).collect();
+        signal::resample(
+            &signal::gaussian(&values, SMOOTHING_SECONDS * fps),
+            fps,
+            count,
+        )
     };
-    // A hair of tolerance: 3 rows at 50 fps last 0.04 s, which must give 3 frames.
-    let count = (last as f64 / fps / FRAME_SECONDS + 1e-6).floor() as usize + 1;
+    let places: [Vec<f64>; 3] = std::array::from_fn(|axis| series(&|i| rows[i].position[axis]));
+    let turns = same_sign(rows);
+    let turns: [Vec<f64>; 4] = std::array::from_fn(|part| series(&|i| turns[i].coords[part]));
+    let joints: [Vec<f64>; JOINTS] = std::array::from_fn(|j| series(&|i| rows[i].joints[j]));
     (0..count)
         .map(|k| {
-            let at = k as f64 * FRAME_SECONDS * fps;
-            let i = (at.floor() as usize).min(last);
-            let (a, b) = (&rows[i], &rows[(i + 1).min(last)]);
-            let u = (at - i as f64).clamp(0.0, 1.0);
+            let turn =
+                Quaternion::from_vector(std::array::from_fn::<f64, 4, _>(|p| turns[p][k]).into());
+            let nearest = ((k as f64 * FRAME_SECONDS * fps).round() as usize).min(rows.len() - 1);
             Row {
-                position: a.position.lerp(&b.position, u),
-                orientation: a
-                    .orientation
-                    .try_slerp(&b.orientation, u, 1e-9)
-                    .unwrap_or(a.orientation), // half a turn between rows has no way between
-                joints: std::array::from_fn(|j| a.joints[j] + u * (b.joints[j] - a.joints[j])),
+                position: Vector3::from_fn(|axis, _| places[axis][k]),
+                // Half a turn between rows has no way between.
+                orientation: UnitQuaternion::try_new(turn, 0.5)
+                    .unwrap_or(rows[nearest].orientation),
+                joints: std::array::from_fn(|j| joints[j][k]),
             }
         })
         .collect()
+}
+
+/// The rows' quaternions, each on the side of the one before: q and −q are the same turn.
+fn same_sign(rows: &[Row]) -> Vec<Quaternion<f64>> {
+    let mut turns: Vec<Quaternion<f64>> = rows
+        .iter()
+        .map(|row| *row.orientation.quaternion())
+        .collect();
+    for i in 1..turns.len() {
+        if turns[i].dot(&turns[i - 1]) < 0.0 {
+            turns[i] = -turns[i];
+        }
+    }
+    turns
 }
 
 /// Moves the whole motion so that the lowest tenth of its frames touches the ground, then lifts

@@ -1,0 +1,270 @@
+//! Which files are meant, how they are read, many at once, and where clips are written.
+//!
+//! Separate because every subcommand asks for files in the same words.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::thread;
+use std::time::Instant;
+
+use anyhow::{Context, Result};
+use clap::Args;
+use motion::import::{self, Format, Imported, Options};
+use motion::{Clip, MotionError, QuaternionOrder, export};
+
+use crate::console::Console;
+use crate::failure::usage;
+
+/// What motion files end in: a folder is searched for these.
+const EXTENSIONS: [&str; 6] = ["npz", "bvh", "amc", "csv", "pkl", "npy"];
+
+/// Files and what they do not say themselves.
+#[derive(Debug, Args)]
+pub(super) struct Sources {
+    /// Motion files, or folders that are searched for them
+    #[arg(required = true, value_name = "FILE")]
+    paths: Vec<PathBuf>,
+    /// Format, instead of the one that the content tells
+    #[arg(long)]
+    format: Option<Format>,
+    /// Frames per second, over what the file says
+    #[arg(long)]
+    fps: Option<f64>,
+    /// Order of the robot's quaternions (wxyz or xyzw), instead of what its posture tells
+    #[arg(long)]
+    quaternion: Option<QuaternionOrder>,
+    /// Skeleton (.asf) of .amc files, instead of the one beside them
+    #[arg(long, value_name = "FILE")]
+    skeleton: Option<PathBuf>,
+    /// Leave a robot's motion at the height that the file gives it
+    #[arg(long)]
+    no_ground: bool,
+}
+
+/// A file and the name of its clip.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Source {
+    pub(super) path: PathBuf,
+    pub(super) name: String,
+}
+
+/// What became of a file.
+pub(super) struct Read {
+    pub(super) source: Source,
+    pub(super) outcome: Result<Imported, MotionError>,
+    /// Time on one core, s.
+    pub(super) seconds: f64,
+}
+
+impl Sources {
+    /// Reads all files, several at once, in their order; progress goes to standard error.
+    pub(super) fn read(&self) -> Result<Vec<Read>> {
+        let sources = self.found()?;
+        let options = self.options();
+        let next = AtomicUsize::new(0);
+        let workers = thread::available_parallelism()
+            .map_or(1, usize::from)
+            .min(sources.len());
+        let mut reads: Vec<Option<Read>> = Vec::new();
+        reads.resize_with(sources.len(), || None);
+        thread::scope(|scope| {
+            let (send, done) = mpsc::channel();
+            for _ in 0..workers {
+                let (send, sources, options, next) = (send.clone(), &sources, &options, &next);
+                scope.spawn(move || {
+                    while let Some((i, source)) = {
+                        let i = next.fetch_add(1, Ordering::Relaxed);
+                        sources.get(i).map(|source| (i, source))
+                    } {
+                        let began = Instant::now();
+                        let outcome =
+                            import::import(&source.path, options).map(|imported| Imported {
+                                clip: Clip {
+                                    name: source.name.clone(),
+                                    ..imported.clip
+                                },
+                                ..imported
+                            });
+                        let read = Read {
+                            source: source.clone(),
+                            outcome,
+                            seconds: began.elapsed().as_secs_f64(),
+                        };
+                        if send.send((i, read)).is_err() {
+                            return; // nobody waits any more
+                        }
+                    }
+                });
+            }
+            drop(send);
+            let mut console = Console::new();
+            for (count, (i, read)) in done.into_iter().enumerate() {
+                if sources.len() > 1 {
+                    let line = format!(
+                        "read {} of {} files · {}",
+                        count + 1,
+                        sources.len(),
+                        read.source.name
+                    );
+                    console.show(&line, Instant::now());
+                }
+                reads[i] = Some(read);
+            }
+            console.finish();
+        });
+        Ok(reads.into_iter().flatten().collect())
+    }
+
+    fn options(&self) -> Options {
+        Options {
+            fps: self.fps,
+            format: self.format,
+            quaternion: self.quaternion,
+            skeleton: self.skeleton.clone(),
+            ground: !self.no_ground,
+        }
+    }
+
+    /// The files, folders searched, each with a name of its own.
+    fn found(&self) -> Result<Vec<Source>> {
+        let mut sources = Vec::new();
+        for path in &self.paths {
+            if path.is_dir() {
+                let before = sources.len();
+                search(path, path, &mut sources)
+                    .with_context(|| format!("searching {}", path.display()))?;
+                if sources.len() == before {
+                    let endings = EXTENSIONS.join(", ");
+                    return Err(usage(format!(
+                        "{} holds no motion file ({endings})",
+                        path.display()
+                    )));
+                }
+            } else {
+                sources.push(Source {
+                    path: path.clone(),
+                    name: name(path),
+                });
+            }
+        }
+        let mut known: BTreeMap<&str, &Path> = BTreeMap::new();
+        for source in &sources {
+            if let Some(other) = known.insert(&source.name, &source.path) {
+                return Err(usage(format!(
+                    "{} and {} would have the same name; import their common folder, or one at a time",
+                    other.display(),
+                    source.path.display()
+                )));
+            }
+        }
+        Ok(sources)
+    }
+}
+
+/// Motion files below a folder, sorted; their names carry the folders between.
+fn search(root: &Path, folder: &Path, sources: &mut Vec<Source>) -> Result<()> {
+    let mut paths: Vec<PathBuf> = fs::read_dir(folder)?
+        .map(|entry| entry.map(|entry| entry.path()))
+        .collect::<Result<_, _>>()?;
+    paths.sort();
+    for path in paths {
+        let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        if path.is_dir() {
+            search(root, &path, sources)?;
+        } else if ending.is_some_and(|e| EXTENSIONS.contains(&e.as_str())) {
+            let inner = path.strip_prefix(root).unwrap_or(&path);
+            let name = name(&inner.with_extension("")).replace('/', "_");
+            let folders = inner
+                .parent()
+                .map(|p| p.to_string_lossy().replace('/', "_"));
+            let name = match folders.as_deref() {
+                None | Some("") => name,
+                Some(folders) => format!("{folders}_{name}"),
+            };
+            sources.push(Source { path, name });
+        }
+    }
+    Ok(())
+}
+
+fn name(path: &Path) -> String {
+    path.file_stem()
+        .map_or_else(|| "clip".into(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// Makes the folder that clips are written to.
+pub(super) fn make_folder(out: &Path) -> Result<()> {
+    fs::create_dir_all(out).with_context(|| format!("making the folder {}", out.display()))
+}
+
+/// Writes a clip into a folder as a table; returns its path.
+pub(super) fn write_clip(out: &Path, clip: &Clip, notes: &[String]) -> Result<PathBuf> {
+    let path = out.join(format!("{}.csv", clip.name.replace(['/', '\\'], "_")));
+    run::replace_file(&path, export::to_csv(clip, notes).as_bytes())
+        .with_context(|| format!("writing {}", path.display()))?;
+    Ok(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sources(paths: Vec<PathBuf>) -> Sources {
+        Sources {
+            paths,
+            format: None,
+            fps: None,
+            quaternion: None,
+            skeleton: None,
+            no_ground: false,
+        }
+    }
+
+    #[test]
+    fn folders_are_searched_and_their_names_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        fs::create_dir_all(root.join("CMU/02")).unwrap();
+        for file in [
+            "CMU/02/b.npz",
+            "CMU/02/a.NPZ",
+            "walk.csv",
+            "notes.txt",
+            "CMU/readme",
+        ] {
+            fs::write(root.join(file), "").unwrap();
+        }
+        let found = sources(vec![root.into()]).found().unwrap();
+        let names: Vec<&str> = found.iter().map(|s| s.name.as_str()).collect();
+        assert_eq!(names, ["CMU_02_a", "CMU_02_b", "walk"]);
+        let twice = sources(vec![root.into(), root.join("walk.csv")])
+            .found()
+            .unwrap_err();
+        assert!(twice.to_string().contains("same name"), "{twice}");
+        let empty = tempfile::tempdir().unwrap();
+        assert!(sources(vec![empty.path().into()]).found().is_err());
+    }
+
+    #[test]
+    fn files_are_read_at_once_and_kept_in_order() {
+        let folder = tempfile::tempdir().unwrap();
+        let walk = motion::gait::walk(1.0).unwrap();
+        for i in 0..8 {
+            let clip = Clip {
+                name: format!("walk{i}"),
+                ..walk.clone()
+            };
+            write_clip(folder.path(), &clip, &[]).unwrap();
+        }
+        fs::write(folder.path().join("walk3.csv"), "broken").unwrap();
+        let reads = sources(vec![folder.path().into()]).read().unwrap();
+        assert_eq!(reads.len(), 8);
+        for (i, read) in reads.iter().enumerate() {
+            assert_eq!(read.source.name, format!("walk{i}"));
+            assert_eq!(read.outcome.is_err(), i == 3);
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! `ampco motions inspect`: what clips are like.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, bail};
+use g1::{JOINT_TABLE, JOINTS};
+use motion::{Clip, Quality};
+use serde_json::{Value, json};
+
+use super::files::{self, Sources};
+use super::{plots, table};
+
+/// The arguments.
+#[derive(Debug, clap::Args)]
+pub(super) struct Inspect {
+    #[command(flatten)]
+    sources: Sources,
+    /// Write an SVG per clip into this folder: speeds, feet, joints over time
+    #[arg(long, value_name = "DIR")]
+    plots: Option<PathBuf>,
+    /// End with one JSON array, an object per clip
+    #[arg(long)]
+    json: bool,
+}
+
+impl Inspect {
+    pub(super) fn run(&self) -> Result<()> {
+        let reads = self.sources.read()?;
+        if let Some(folder) = &self.plots {
+            files::make_folder(folder)?;
+        }
+        let mut out = std::io::stdout().lock();
+        let (mut rows, mut failures) = (Vec::new(), Vec::new());
+        if !self.json {
+            writeln!(out, "{}", table::HEADING)?;
+        }
+        let few = reads.len() <= 3;
+        for read in reads {
+            let clip = match read.outcome {
+                Ok(imported) => imported.clip,
+                Err(error) => {
+                    failures.push(format!("{:#}", anyhow::Error::from(error)));
+                    continue;
+                }
+            };
+            let quality = Quality::of(&clip);
+            if self.json {
+                rows.push(
+                    json!({ "name": clip.name, "quality": quality, "ranges": ranges(&clip) }),
+                );
+            } else {
+                writeln!(out, "{}", table::line(&clip.name, &quality))?;
+                if few {
+                    details(&mut out, &clip, &quality)?;
+                }
+            }
+            if let Some(folder) = &self.plots {
+                let path = folder.join(format!("{}.svg", clip.name));
+                plots::draw(&clip, &path).with_context(|| format!("drawing {}", path.display()))?;
+            }
+        }
+        if self.json {
+            writeln!(out, "{}", Value::Array(rows))?;
+        }
+        if !failures.is_empty() {
+            bail!("{}", failures.join("\n"));
+        }
+        Ok(())
+    }
+}
+
+/// Ranges of joints, rad: least, greatest, and greatest speed (rad/s).
+fn ranges(clip: &Clip) -> Value {
+    let range = |j: usize| {
+        let [low, high, speed] = range(clip, j);
+        (JOINT_TABLE[j].name.to_owned(), json!([low, high, speed]))
+    };
+    Value::Object((0..JOINTS).map(range).collect())
+}
+
+fn range(clip: &Clip, joint: usize) -> [f32; 3] {
+    let angles = || clip.frames.iter().map(|f| f.joint_positions[joint]);
+    let speeds = clip.frames.iter().map(|f| f.joint_velocities[joint].abs());
+    [
+        angles().fold(f32::INFINITY, f32::min),
+        angles().fold(f32::NEG_INFINITY, f32::max),
+        speeds.fold(0.0, f32::max),
+    ]
+}
+
+fn details(out: &mut impl Write, clip: &Clip, quality: &Quality) -> Result<()> {
+    let [slow, fast] = quality.speed_range;
+    let [low, high] = quality.height;
+    writeln!(
+        out,
+        "    speed {slow:.2}–{fast:.2} m/s, turning {:.2} rad/s, pelvis {low:.2}–{high:.2} m",
+        quality.yaw_rate
+    )?;
+    writeln!(
+        out,
+        "    left foot down {:.0} %, right {:.0} %, none {:.0} %; slip 95 % below {:.2} m/s",
+        100.0 * quality.duty[0],
+        100.0 * quality.duty[1],
+        100.0 * quality.flight,
+        quality.slip_95
+    )?;
+    writeln!(
+        out,
+        "    {:<28} {:>15} {:>17} {:>8}",
+        "joint", "rad", "of rad", "rad/s"
+    )?;
+    for (j, joint) in JOINT_TABLE.iter().enumerate() {
+        let [low, high, speed] = range(clip, j);
+        writeln!(
+            out,
+            "    {:<28} {low:6.2} to {high:5.2} {:7.2} to {:6.2} {speed:8.1}",
+            joint.name, joint.lower, joint.upper
+        )?;
+    }
+    for defect in quality.defects() {
+        writeln!(out, "    defect: {defect}")?;
+    }
+    Ok(())
+}

@@ -1,0 +1,277 @@
+//! Biovision hierarchy (`.bvh`): a skeleton of offsets, then channels frame by frame.
+//!
+//! Separate as every format is. Channels may be in any order and positions on any joint: a channel
+//! that is there replaces its part of the joint's offset (Bandai Namco's files have six on each).
+
+use super::file::File;
+use super::human::Joints;
+use crate::error::MotionError;
+use nalgebra::{Rotation3, Vector3};
+
+/// A channel of a joint: an axis to move along or to turn about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Channel {
+    Position(usize),
+    Rotation(usize),
+}
+
+#[derive(Debug)]
+struct Joint {
+    parent: Option<usize>,
+    offset: Vector3<f64>,
+    channels: Vec<Channel>,
+}
+
+/// Joint positions and frames per second.
+pub(super) fn read(file: &File<'_>) -> Result<(Joints, f64), MotionError> {
+    let text = file.text();
+    let mut words = Words::new(file, &text);
+    let mut names = Vec::new();
+    let joints = hierarchy(&mut words, &mut names)?;
+    words.expect("MOTION")?;
+    words.expect("Frames:")?;
+    let declared = words.number("the number of frames")?;
+    words.expect("Frame")?;
+    words.expect("Time:")?;
+    let seconds = words.number("the frame time")?;
+    if !(1e-4..=1.0).contains(&seconds) {
+        let problem = format!("Frame Time is {seconds} s");
+        return Err(words.error(
+            problem,
+            "write the seconds between frames, from 0.0001 to 1",
+        ));
+    }
+    let channels: usize = joints.iter().map(|joint| joint.channels.len()).sum();
+    let mut frames = Vec::new();
+    while words.more() {
+        frames.push(frame(&mut words, &joints, channels, frames.len())?);
+    }
+    if frames.len() as f64 != declared {
+        let problem = format!(
+            "holds {} frames where Frames: says {declared}",
+            frames.len()
+        );
+        return Err(file.unusable(&problem, "download or export it again: it may be cut off"));
+    }
+    Ok((Joints { names, frames }, 1.0 / seconds))
+}
+
+/// Joints and end sites from the hierarchy; an end site is named after its joint, with "End".
+fn hierarchy(words: &mut Words<'_>, names: &mut Vec<String>) -> Result<Vec<Joint>, MotionError> {
+    let mut joints: Vec<Joint> = Vec::new();
+    let mut open: Vec<usize> = Vec::new();
+    words.expect("HIERARCHY")?;
+    loop {
+        let (line, word) = words.word("a joint")?;
+        match word {
+            "ROOT" | "JOINT" | "End" => {
+                let (_, name) = words.word("the joint's name")?;
+                let parent = open.last().copied();
+                names.push(match (word, parent) {
+                    ("End", Some(parent)) => format!("{}End", names[parent]),
+                    _ => name.to_owned(),
+                });
+                words.expect("{")?;
+                open.push(joints.len());
+                joints.push(Joint {
+                    parent,
+                    offset: Vector3::zeros(),
+                    channels: Vec::new(),
+                });
+            }
+            "OFFSET" => {
+                let offset = [
+                    words.number("OFFSET")?,
+                    words.number("OFFSET")?,
+                    words.number("OFFSET")?,
+                ];
+                words.current(&mut joints, &open)?.offset = offset.into();
+            }
+            "CHANNELS" => {
+                let count = words.number("CHANNELS")?;
+                for _ in 0..count.clamp(0.0, 6.0) as usize {
+                    let channel = words.channel()?;
+                    words.current(&mut joints, &open)?.channels.push(channel);
+                }
+            }
+            "}" => {
+                open.pop();
+                if open.is_empty() {
+                    return Ok(joints);
+                }
+            }
+            other => {
+                let problem = format!("{other:?} in the hierarchy");
+                let remedy = "expected JOINT, End Site, OFFSET, CHANNELS or }; export it again";
+                return Err(words.file.line(line, problem, remedy));
+            }
+        }
+    }
+}
+
+/// Positions of all joints in a frame.
+fn frame(
+    words: &mut Words<'_>,
+    joints: &[Joint],
+    channels: usize,
+    index: usize,
+) -> Result<Vec<Vector3<f64>>, MotionError> {
+    let line = words.line();
+    let mut numbers = Vec::with_capacity(channels);
+    for _ in 0..channels {
+        numbers.push(words.frame_number(index, channels, numbers.len(), line)?);
+    }
+    let mut numbers = numbers.into_iter();
+    let mut turns: Vec<Rotation3<f64>> = Vec::with_capacity(joints.len());
+    let mut places: Vec<Vector3<f64>> = Vec::with_capacity(joints.len());
+    for joint in joints {
+        let (mut offset, mut turn) = (joint.offset, Rotation3::identity());
+        for channel in &joint.channels {
+            let number = numbers.next().expect("as many numbers as channels");
+            match *channel {
+                Channel::Position(axis) => offset[axis] = number,
+                Channel::Rotation(axis) => {
+                    let about = Vector3::ith(axis, number.to_radians());
+                    turn *= Rotation3::from_scaled_axis(about);
+                }
+            }
+        }
+        let (place, before) = match joint.parent {
+            Some(p) => (places[p] + turns[p] * offset, turns[p]),
+            None => (offset, Rotation3::identity()),
+        };
+        places.push(place);
+        turns.push(before * turn);
+    }
+    Ok(places)
+}
+
+/// The words of a file with their lines.
+struct Words<'a> {
+    file: &'a File<'a>,
+    words: std::iter::Peekable<Box<dyn Iterator<Item = (usize, &'a str)> + 'a>>,
+    line: usize,
+}
+
+impl<'a> Words<'a> {
+    fn new(file: &'a File<'a>, text: &'a str) -> Self {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let words: Box<dyn Iterator<Item = (usize, &'a str)> + 'a> = Box::new(
+            text.lines()
+                .enumerate()
+                .flat_map(|(i, line)| line.split_whitespace().map(move |word| (i + 1, word))),
+        );
+        Self {
+            file,
+            words: words.peekable(),
+            line: 0,
+        }
+    }
+
+    fn more(&mut self) -> bool {
+        self.words.peek().is_some()
+    }
+
+    /// The line of the next word.
+    fn line(&mut self) -> usize {
+        self.words.peek().map_or(self.line, |(line, _)| *line)
+    }
+
+    fn word(&mut self, what: &str) -> Result<(usize, &'a str), MotionError> {
+        let Some((line, word)) = self.words.next() else {
+            let problem = format!("ends where {what} should be");
+            return Err(self.error(problem, "download or export it again: it is cut off"));
+        };
+        self.line = line;
+        Ok((line, word))
+    }
+
+    fn expect(&mut self, expected: &str) -> Result<(), MotionError> {
+        let (_, word) = self.word(expected)?;
+        if word.eq_ignore_ascii_case(expected) {
+            return Ok(());
+        }
+        Err(self.error(
+            format!("{word:?} where {expected} should be"),
+            "export it again as BVH",
+        ))
+    }
+
+    fn number(&mut self, what: &str) -> Result<f64, MotionError> {
+        let (_, word) = self.word(what)?;
+        match word.parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(number),
+            _ => Err(self.error(
+                format!("{word:?} for {what}"),
+                "write a finite decimal number",
+            )),
+        }
+    }
+
+    /// A number of a frame, which must be on the frame's line.
+    fn frame_number(
+        &mut self,
+        frame: usize,
+        channels: usize,
+        channel: usize,
+        line: usize,
+    ) -> Result<f64, MotionError> {
+        let field = format!("channel {}", channel + 1);
+        let next = self.words.next_if(|(at, _)| *at == line);
+        let Some((_, word)) = next else {
+            let problem =
+                format!("line {line} has {channel} numbers, the hierarchy has {channels} channels");
+            return Err(self.file.frame(
+                frame,
+                &field,
+                problem,
+                "give every frame a line of all channels",
+            ));
+        };
+        match word.parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(number),
+            _ => {
+                let problem = format!("{word:?} is not a finite number");
+                Err(self
+                    .file
+                    .frame(frame, &field, problem, "repair or cut the frame"))
+            }
+        }
+    }
+
+    fn channel(&mut self) -> Result<Channel, MotionError> {
+        let (_, word) = self.word("a channel")?;
+        let axis = match word.bytes().next() {
+            Some(b'X' | b'x') => 0,
+            Some(b'Y' | b'y') => 1,
+            _ => 2,
+        };
+        match word.get(1..).map(str::to_ascii_lowercase).as_deref() {
+            Some("position") => Ok(Channel::Position(axis)),
+            Some("rotation") => Ok(Channel::Rotation(axis)),
+            _ => Err(self.error(
+                format!("channel {word:?}"),
+                "expected Xposition … Zrotation",
+            )),
+        }
+    }
+
+    fn current<'j>(
+        &self,
+        joints: &'j mut [Joint],
+        open: &[usize],
+    ) -> Result<&'j mut Joint, MotionError> {
+        match open.last() {
+            Some(&i) => Ok(&mut joints[i]),
+            None => Err(self.error("numbers outside a joint".into(), "export it again as BVH")),
+        }
+    }
+
+    fn error(&self, problem: String, remedy: &str) -> MotionError {
+        self.file.line(self.line, problem, remedy)
+    }
+}
+
+#[cfg(test)]
+#[path = "bvh_tests.rs"]
+pub(super) mod tests;

@@ -1,0 +1,165 @@
+//! Small files whose positions can be worked out in the head, and broken ones.
+
+use super::*;
+use crate::import::human::tests::STANDING;
+use std::fmt::Write as _;
+use std::path::Path;
+
+const ARM: &str = "HIERARCHY
+ROOT Hips
+{
+  OFFSET 1 2 3
+  CHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation Xrotation
+  JOINT Spine
+  {
+    OFFSET 0 10 0
+    CHANNELS 3 Zrotation Xrotation Yrotation
+    End Site
+    {
+      OFFSET 0 5 0
+    }
+  }
+}
+MOTION
+Frames: 2
+Frame Time: 0.0333333
+0 90 0 0 0 0 0 0 0
+1 90 2 90 0 0 0 90 0
+";
+
+fn positions(text: &str) -> Result<(Joints, f64), String> {
+    let file = File {
+        path: Path::new("walk.bvh"),
+        bytes: text.as_bytes(),
+    };
+    read(&file).map_err(|e| e.to_string())
+}
+
+/// A human that stands and slides 1 cm a frame along z, y up, in cm, every joint placed by itself.
+pub(in crate::import) fn sliding(frames: usize) -> String {
+    let mut text = String::from(
+        "HIERARCHY\nROOT Root\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zposition\n",
+    );
+    for (name, [x, y, z]) in STANDING {
+        let (x, y, z) = (100.0 * y, 100.0 * z, 100.0 * x);
+        let _ = write!(
+            text,
+            "JOINT {name}\n{{\nOFFSET {x} {y} {z}\nEnd Site\n{{\nOFFSET 0 1 0\n}}\n}}\n"
+        );
+    }
+    let _ = write!(text, "}}\nMOTION\nFrames: {frames}\nFrame Time: 0.033333\n");
+    for i in 0..frames {
+        let _ = writeln!(text, "0 0 {i}");
+    }
+    text
+}
+
+#[test]
+fn channels_apply_in_the_order_of_the_file() {
+    let (joints, fps) = positions(ARM).unwrap();
+    assert_eq!(joints.names, ["Hips", "Spine", "SpineEnd"]);
+    assert!((fps - 30.0).abs() < 1e-3);
+    assert_eq!(joints.frames[0][2], Vector3::new(0.0, 105.0, 0.0));
+    // Hips turned by 90° about z: +y becomes −x. The spine then turns about its own x by 90°:
+    // its y becomes z, which the hips leave alone.
+    let [hips, spine, end] = [0, 1, 2].map(|i| joints.frames[1][i]);
+    assert_eq!(hips, Vector3::new(1.0, 90.0, 2.0));
+    assert!(
+        (spine - Vector3::new(-9.0, 90.0, 2.0)).norm() < 1e-9,
+        "{spine}"
+    );
+    assert!((end - Vector3::new(-9.0, 90.0, 7.0)).norm() < 1e-9, "{end}");
+}
+
+#[test]
+fn positions_on_any_joint_replace_its_offset() {
+    let text = ARM
+        .replace(
+            "CHANNELS 3 Zrotation Xrotation Yrotation",
+            "CHANNELS 4 Yposition Zrotation Xrotation Yrotation",
+        )
+        .replace("0 90 0 0 0 0 0 0 0", "0 90 0 0 0 0 20 0 0 0")
+        .replace("1 90 2 90 0 0 0 90 0", "1 90 2 90 0 0 20 0 90 0");
+    let (joints, _) = positions(&text).unwrap();
+    assert_eq!(joints.frames[0][1], Vector3::new(0.0, 110.0, 0.0));
+}
+
+#[test]
+fn a_skeleton_of_fourteen_joints_is_a_capture() {
+    let text = sliding(30);
+    let (joints, fps) = positions(&text).unwrap();
+    let file = File {
+        path: Path::new("x"),
+        bytes: b"",
+    };
+    let capture = crate::import::human::capture(&file, &joints, fps, &mut Vec::new()).unwrap();
+    assert!((capture.travel_speed() - 0.3).abs() < 1e-3);
+}
+
+#[test]
+fn errors_name_line_or_frame() {
+    for (text, parts) in [
+        (
+            ARM.replace("Frames: 2", "Frames: 3"),
+            ["2 frames", "says 3", "cut off"],
+        ),
+        (
+            ARM.replace("Frames: 2", "Frames: 0")
+                .replace("0 90 0 0 0 0 0 0 0\n1 90 2 90 0 0 0 90 0\n", ""),
+            ["", "", ""],
+        ),
+        (
+            ARM.replace("1 90 2 90", "1 nan 2 90"),
+            ["frame 2", "channel 2", "nan"],
+        ),
+        (
+            ARM.replace("0 90 0 0 0 0 0 0 0", "0 90 0 0 0 0 0 0"),
+            ["frame 1", "line 19", "8 numbers"],
+        ),
+        (
+            ARM.replace("Zrotation Xrotation", "Zrotation Wobble"),
+            ["line 9", "Wobble", "Zrotation"],
+        ),
+        (
+            ARM.replace("0.0333333", "0"),
+            ["line 18", "Frame Time", "seconds"],
+        ),
+        (
+            ARM.replace("OFFSET 0 10 0", "OFFSET 0 ten 0"),
+            ["line 8", "ten", "number"],
+        ),
+        (
+            ARM.replace("MOTION", "MOTIONS"),
+            ["line 16", "MOTIONS", "MOTION"],
+        ),
+        (
+            ARM.replace("JOINT Spine", "JINT Spine"),
+            ["line 6", "JINT", "JOINT"],
+        ),
+    ] {
+        match positions(&text) {
+            Ok((joints, _)) => assert!(joints.frames.is_empty()), // refused when it becomes a capture
+            Err(message) => {
+                for part in parts {
+                    assert!(message.contains(part), "{part:?} is not in {message:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn no_cut_panics() {
+    for cut in 0..ARM.len() {
+        let _ = positions(&ARM[..cut]);
+    }
+    for text in [
+        "",
+        "HIERARCHY",
+        "HIERARCHY }",
+        "HIERARCHY OFFSET 1 2 3",
+        "HIERARCHY ROOT a { CHANNELS 9e9",
+    ] {
+        assert!(positions(text).is_err(), "{text}");
+    }
+}

@@ -1,0 +1,259 @@
+//! NumPy archives (`.npz`): arrays by name.
+//!
+//! Separate because four formats are archives that differ in the names of their arrays only.
+
+use super::File;
+use super::array::Array;
+use crate::error::MotionError;
+use npyz::{NpyFile, Order};
+use std::io::{Cursor, Read};
+use zip::ZipArchive;
+use zip::result::ZipError;
+
+/// Most numbers in an array: 4 hours of SMPL+H at 120 frames a second are a quarter of that. A forged
+/// header asks for more memory than there is.
+const MOST_NUMBERS: u64 = 1 << 30;
+
+/// An open archive.
+pub(in crate::import) struct Archive<'a> {
+    file: File<'a>,
+    zip: ZipArchive<Cursor<&'a [u8]>>,
+}
+
+impl<'a> Archive<'a> {
+    pub(in crate::import) fn open(file: &File<'a>) -> Result<Self, MotionError> {
+        let zip = ZipArchive::new(Cursor::new(file.bytes)).map_err(|error| broken(file, &error))?;
+        Ok(Self { file: *file, zip })
+    }
+
+    /// Names of the arrays.
+    pub(in crate::import) fn names(&self) -> Vec<String> {
+        let mut names: Vec<String> = self
+            .zip
+            .file_names()
+            .filter_map(|name| name.strip_suffix(".npy").map(String::from))
+            .collect();
+        names.sort();
+        names
+    }
+
+    /// An array of numbers that must be there.
+    pub(in crate::import) fn numbers(&mut self, name: &str) -> Result<Array, MotionError> {
+        self.try_numbers(name)?.ok_or_else(|| {
+            let problem = format!("has no array {name} (but {})", self.names().join(", "));
+            self.file
+                .unusable(&problem, "check --format, or export the motion again")
+        })
+    }
+
+    /// An array of numbers, if it is there.
+    pub(in crate::import) fn try_numbers(
+        &mut self,
+        name: &str,
+    ) -> Result<Option<Array>, MotionError> {
+        let file = self.file;
+        let Some(npy) = self.array(name)? else {
+            return Ok(None);
+        };
+        let shape: Vec<usize> = npy.shape().iter().map(|&d| d as usize).collect();
+        let (count, fortran) = (npy.len(), npy.order() == Order::Fortran);
+        if count > MOST_NUMBERS {
+            return Err(file.unusable(
+                &format!("array {name} claims {count} numbers"),
+                "export it again",
+            ));
+        }
+        let values = numbers(npy).ok_or_else(|| {
+            file.unusable(
+                &format!("array {name} is cut off or does not hold plain numbers"),
+                "save it again with numpy.savez, as float32, float64 or an integer type",
+            )
+        })?;
+        let array = Array::of(shape, values, fortran);
+        array
+            .ok_or_else(|| {
+                file.unusable(
+                    &format!("array {name} is shorter than its shape"),
+                    "export it again",
+                )
+            })
+            .map(Some)
+    }
+
+    /// A single number under one of several names.
+    pub(in crate::import) fn scalar(&mut self, names: &[&str]) -> Result<Option<f64>, MotionError> {
+        for name in names {
+            if let Some(array) = self.try_numbers(name)? {
+                return Ok(array.values.first().copied());
+            }
+        }
+        Ok(None)
+    }
+
+    /// An array of words, if it is there.
+    pub(in crate::import) fn words(
+        &mut self,
+        name: &str,
+    ) -> Result<Option<Vec<String>>, MotionError> {
+        let file = self.file;
+        let Some(npy) = self.array(name)? else {
+            return Ok(None);
+        };
+        let words = npy
+            .data::<String>()
+            .ok()
+            .and_then(|words| words.collect::<Result<Vec<_>, _>>().ok());
+        words.map(Some).ok_or_else(|| {
+            file.unusable(
+                &format!("array {name} does not hold names"),
+                "save it as an array of strings",
+            )
+        })
+    }
+
+    fn array(&mut self, name: &str) -> Result<Option<NpyFile<impl Read>>, MotionError> {
+        let file = self.file;
+        let entry = match self.zip.by_name(&format!("{name}.npy")) {
+            Ok(entry) => entry,
+            Err(ZipError::FileNotFound) => return Ok(None),
+            Err(error) => return Err(broken(&file, &error)),
+        };
+        NpyFile::new(entry).map(Some).map_err(|error| {
+            file.unusable(
+                &format!("array {name} cannot be read ({error})"),
+                "export it again",
+            )
+        })
+    }
+}
+
+/// The numbers of an array, whatever their type.
+fn numbers<R: Read>(npy: NpyFile<R>) -> Option<Vec<f64>> {
+    macro_rules! try_types {
+        ($npy:expr, $($type:ty),*) => {{
+            let npy = $npy;
+            $(let npy = match npy.try_data::<$type>() {
+                Ok(values) => {
+                    return values.map(|v| v.ok().map(|v| v as f64)).collect();
+                }
+                Err(npy) => npy,
+            };)*
+            drop(npy);
+            None
+        }};
+    }
+    try_types!(npy, f64, f32, i64, i32, i16, i8, u64, u32, u16, u8)
+}
+
+fn broken(file: &File<'_>, error: &ZipError) -> MotionError {
+    file.unusable(
+        &format!("is no readable .npz archive ({error})"),
+        "download or export it again: it may be cut off",
+    )
+}
+
+#[cfg(test)]
+pub(in crate::import) mod tests {
+    use super::*;
+    use npyz::WriterBuilder;
+    use std::io::Write;
+    use std::path::Path;
+    use zip::write::SimpleFileOptions;
+
+    /// Writes archives as NumPy does.
+    pub(in crate::import) struct Builder(zip::ZipWriter<Cursor<Vec<u8>>>);
+
+    impl Builder {
+        pub(in crate::import) fn new() -> Self {
+            Self(zip::ZipWriter::new(Cursor::new(Vec::new())))
+        }
+
+        pub(in crate::import) fn numbers(
+            mut self,
+            name: &str,
+            shape: &[u64],
+            values: &[f64],
+        ) -> Self {
+            self.0
+                .start_file(format!("{name}.npy"), SimpleFileOptions::default())
+                .unwrap();
+            let mut bytes = Vec::new();
+            let mut writer = npyz::WriteOptions::new()
+                .default_dtype()
+                .shape(shape)
+                .writer(&mut bytes)
+                .begin_nd()
+                .unwrap();
+            writer.extend(values.iter().copied()).unwrap();
+            writer.finish().unwrap();
+            self.0.write_all(&bytes).unwrap();
+            self
+        }
+
+        pub(in crate::import) fn words(mut self, name: &str, words: &[&str]) -> Self {
+            self.0
+                .start_file(format!("{name}.npy"), SimpleFileOptions::default())
+                .unwrap();
+            let longest = words.iter().map(|w| w.len()).max().unwrap_or(1);
+            let mut bytes = Vec::new();
+            let mut writer = npyz::WriteOptions::<str>::new()
+                .dtype(npyz::DType::new_scalar(
+                    format!("<U{longest}").parse().unwrap(),
+                ))
+                .shape(&[words.len() as u64])
+                .writer(&mut bytes)
+                .begin_nd()
+                .unwrap();
+            for word in words {
+                writer.push(*word).unwrap();
+            }
+            writer.finish().unwrap();
+            self.0.write_all(&bytes).unwrap();
+            self
+        }
+
+        pub(in crate::import) fn done(self) -> Vec<u8> {
+            self.0.finish().unwrap().into_inner()
+        }
+    }
+
+    #[test]
+    fn arrays_are_found_by_name() {
+        let bytes = Builder::new()
+            .numbers("a", &[2, 2], &[1.0, 2.0, 3.0, 4.0])
+            .numbers("fps", &[], &[60.0])
+            .words("names", &["hip", "knee"])
+            .done();
+        let file = File {
+            path: Path::new("x.npz"),
+            bytes: &bytes,
+        };
+        let mut archive = Archive::open(&file).unwrap();
+        assert_eq!(archive.names(), ["a", "fps", "names"]);
+        assert_eq!(archive.numbers("a").unwrap().frame(1), [3.0, 4.0]);
+        assert_eq!(archive.scalar(&["rate", "fps"]).unwrap(), Some(60.0));
+        assert_eq!(archive.words("names").unwrap().unwrap(), ["hip", "knee"]);
+        assert_eq!(archive.try_numbers("b").unwrap(), None);
+        let message = archive.numbers("b").unwrap_err().to_string();
+        assert!(
+            message.contains("x.npz") && message.contains("a, fps, names"),
+            "{message}"
+        );
+        assert!(archive.numbers("names").is_err());
+        assert!(archive.words("a").is_err());
+    }
+
+    #[test]
+    fn no_cut_panics() {
+        let bytes = Builder::new().numbers("a", &[2], &[1.0, 2.0]).done();
+        for cut in 0..bytes.len() {
+            let file = File {
+                path: Path::new("x.npz"),
+                bytes: &bytes[..cut],
+            };
+            if let Ok(mut archive) = Archive::open(&file) {
+                let _ = archive.numbers("a");
+            }
+        }
+    }
+}

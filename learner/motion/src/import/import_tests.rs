@@ -1,0 +1,186 @@
+//! Every format from file to clip.
+
+use super::*;
+use crate::clip::FRAME_SECONDS;
+use crate::gait;
+use crate::quality::Quality;
+
+/// Writes a file and imports it.
+fn imported(name: &str, bytes: &[u8], options: &Options) -> Result<Imported, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    std::fs::write(folder.path().join("02.asf"), amc::tests::skeleton()).unwrap();
+    import(&path, options).map_err(|e| e.to_string())
+}
+
+fn told(name: &str, bytes: &[u8]) -> Imported {
+    imported(name, bytes, &Options::default()).unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+#[test]
+fn every_format_becomes_a_clip_by_its_content() {
+    for (name, bytes, format, fps) in [
+        (
+            "a.npz",
+            amass::tests::standing(60, 156),
+            Format::Amass,
+            100.0,
+        ),
+        (
+            "b.bvh",
+            bvh::tests::sliding(30).into_bytes(),
+            Format::Bvh,
+            30.0,
+        ),
+        (
+            "02_01.amc",
+            amc::tests::motion(60).into_bytes(),
+            Format::Amc,
+            120.0,
+        ),
+        (
+            "c.npz",
+            robot::tests::beyond_mimic_file(&joints::SDK_29),
+            Format::BeyondMimic,
+            50.0,
+        ),
+        ("d.npz", isaac::tests::lab_file(60), Format::IsaacLab, 60.0),
+        ("e.npy", isaac::tests::gym_file(60), Format::IsaacGym, 60.0),
+        ("f.pkl", robot::tests::gmr_file(29), Format::Gmr, 50.0),
+        (
+            "g.csv",
+            crate::export::to_csv(&gait::walk(1.0).unwrap(), &[]).into_bytes(),
+            Format::Csv,
+            50.0,
+        ),
+    ] {
+        // The name says nothing.
+        let result = if name.ends_with(".amc") {
+            told(name, &bytes)
+        } else {
+            told("motion.dat", &bytes)
+        };
+        assert_eq!(result.format, format, "{name}");
+        assert!((result.fps - fps).abs() < 0.1, "{name}");
+        let seconds = (result.frames - 1) as f64 / result.fps;
+        assert!(
+            (result.clip.seconds() - seconds).abs() < FRAME_SECONDS,
+            "{name}"
+        );
+        assert!(
+            result.clip.frames.iter().all(g1::RobotState::is_finite),
+            "{name}"
+        );
+        assert!(!result.decisions.is_empty(), "{name}");
+        let human = !matches!(format, Format::BeyondMimic | Format::Gmr | Format::Csv);
+        assert_eq!(result.retargeting.is_some(), human, "{name}");
+        let quality = Quality::of(&result.clip);
+        assert!(
+            quality.penetration < 0.005,
+            "{name}: {}",
+            quality.penetration
+        );
+        assert!(
+            quality.beyond_limits.is_empty(),
+            "{name}: {:?}",
+            quality.beyond_limits
+        );
+        assert!(
+            quality.velocity_error < 1e-3,
+            "{name}: {}",
+            quality.velocity_error
+        );
+    }
+}
+
+#[test]
+fn gmr_quaternions_are_read_with_the_scalar_last() {
+    let walk = gait::walk(1.0).unwrap();
+    let result = told("walk.pkl", &robot::tests::gmr_file(23));
+    assert!(
+        result.decisions.iter().any(|d| d.contains("xyzw")),
+        "{:?}",
+        result.decisions
+    );
+    for (a, b) in result.clip.frames.iter().zip(&walk.frames) {
+        assert!(a.orientation.angle_to(&b.orientation) < 1e-3);
+    }
+}
+
+#[test]
+fn a_table_without_header_is_read_in_the_order_that_stands_upright() {
+    let walk = gait::walk(1.0).unwrap();
+    let text: String = walk
+        .frames
+        .iter()
+        .map(|f| {
+            let (p, q) = (f.position, f.orientation);
+            let joints: Vec<String> = f.joint_positions.iter().map(f32::to_string).collect();
+            format!(
+                "{},{},{},{},{},{},{},{}\n",
+                p.x,
+                p.y,
+                p.z,
+                q.i,
+                q.j,
+                q.k,
+                q.w,
+                joints.join(",")
+            )
+        })
+        .collect();
+    let message = imported("walk.csv", text.as_bytes(), &Options::default()).unwrap_err();
+    assert!(
+        message.contains("walk.csv") && message.contains("--fps"),
+        "{message}"
+    );
+    let with = |quaternion| Options {
+        fps: Some(50.0),
+        quaternion,
+        ..Options::default()
+    };
+    let result = imported("walk.csv", text.as_bytes(), &with(None)).unwrap();
+    assert!(
+        result.decisions[1].starts_with("quaternions xyzw"),
+        "{:?}",
+        result.decisions
+    );
+    assert!((result.clip.command[0] - 1.0).abs() < 0.03);
+    let wrong = imported(
+        "walk.csv",
+        text.as_bytes(),
+        &with(Some(QuaternionOrder::Wxyz)),
+    )
+    .unwrap();
+    assert_ne!(wrong.clip, result.clip); // the user's word counts
+}
+
+#[test]
+fn a_wrong_rate_or_format_is_refused() {
+    let bytes = bvh::tests::sliding(30).into_bytes();
+    let options = Options {
+        fps: Some(0.0),
+        ..Options::default()
+    };
+    assert!(
+        imported("a.bvh", &bytes, &options)
+            .unwrap_err()
+            .contains("--fps")
+    );
+    for format in Format::ALL.into_iter().filter(|f| *f != Format::Bvh) {
+        let options = Options {
+            format: Some(format),
+            ..Options::default()
+        };
+        let message = imported("a.bvh", &bytes, &options).unwrap_err();
+        assert!(message.contains("a.bvh"), "{format}: {message}");
+    }
+    let message = imported(
+        "a.bvh",
+        bvh::tests::sliding(1).as_bytes(),
+        &Options::default(),
+    )
+    .unwrap_err();
+    assert!(message.contains("0.04 s"), "{message}");
+}

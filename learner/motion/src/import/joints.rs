@@ -1,0 +1,235 @@
+//! Joints of the G1 in files: from the 29-joint robot, by name or in one of the known orders.
+//!
+//! Separate because every format of robot motion has them, and checks are the same for all.
+
+use super::Row;
+use super::file::File;
+use super::file::array::{ANGLES, Array, PLACES};
+use crate::config::QuaternionOrder;
+use crate::error::MotionError;
+use g1::{JOINT_TABLE, JOINTS};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+/// Order of Unitree's SDK for the robot with 29 joints, which is that of MuJoCo models too.
+pub(super) const SDK_29: [&str; 29] = [
+    "left_hip_pitch",
+    "left_hip_roll",
+    "left_hip_yaw",
+    "left_knee",
+    "left_ankle_pitch",
+    "left_ankle_roll",
+    "right_hip_pitch",
+    "right_hip_roll",
+    "right_hip_yaw",
+    "right_knee",
+    "right_ankle_pitch",
+    "right_ankle_roll",
+    "waist_yaw",
+    "waist_roll",
+    "waist_pitch",
+    "left_shoulder_pitch",
+    "left_shoulder_roll",
+    "left_shoulder_yaw",
+    "left_elbow",
+    "left_wrist_roll",
+    "left_wrist_pitch",
+    "left_wrist_yaw",
+    "right_shoulder_pitch",
+    "right_shoulder_roll",
+    "right_shoulder_yaw",
+    "right_elbow",
+    "right_wrist_roll",
+    "right_wrist_pitch",
+    "right_wrist_yaw",
+];
+
+/// Order of Isaac Lab for the same: breadth first from the pelvis.
+pub(super) const ISAAC_29: [&str; 29] = [
+    "left_hip_pitch",
+    "right_hip_pitch",
+    "waist_yaw",
+    "left_hip_roll",
+    "right_hip_roll",
+    "waist_roll",
+    "left_hip_yaw",
+    "right_hip_yaw",
+    "waist_pitch",
+    "left_knee",
+    "right_knee",
+    "left_shoulder_pitch",
+    "right_shoulder_pitch",
+    "left_ankle_pitch",
+    "right_ankle_pitch",
+    "left_shoulder_roll",
+    "right_shoulder_roll",
+    "left_ankle_roll",
+    "right_ankle_roll",
+    "left_shoulder_yaw",
+    "right_shoulder_yaw",
+    "left_elbow",
+    "right_elbow",
+    "left_wrist_roll",
+    "right_wrist_roll",
+    "left_wrist_pitch",
+    "right_wrist_pitch",
+    "left_wrist_yaw",
+    "right_wrist_yaw",
+];
+
+/// Breadth first for the robot with 23 joints.
+pub(super) const ISAAC_23: [&str; 23] = [
+    "left_hip_pitch",
+    "right_hip_pitch",
+    "waist_yaw",
+    "left_hip_roll",
+    "right_hip_roll",
+    "left_shoulder_pitch",
+    "right_shoulder_pitch",
+    "left_hip_yaw",
+    "right_hip_yaw",
+    "left_shoulder_roll",
+    "right_shoulder_roll",
+    "left_knee",
+    "right_knee",
+    "left_shoulder_yaw",
+    "right_shoulder_yaw",
+    "left_ankle_pitch",
+    "right_ankle_pitch",
+    "left_elbow",
+    "right_elbow",
+    "left_ankle_roll",
+    "right_ankle_roll",
+    "left_wrist_roll",
+    "right_wrist_roll",
+];
+
+/// The joints that the robot with 23 lacks.
+pub(super) const DROPPED: [&str; 6] = [
+    "waist_roll",
+    "waist_pitch",
+    "left_wrist_pitch",
+    "left_wrist_yaw",
+    "right_wrist_pitch",
+    "right_wrist_yaw",
+];
+
+/// A joint's name without its ending.
+pub(super) fn short(name: &str) -> &str {
+    let name = name.strip_suffix("_dof").unwrap_or(name);
+    name.strip_suffix("_joint").unwrap_or(name)
+}
+
+/// Our 23 joints' names without their ending.
+pub(super) fn ours() -> [&'static str; JOINTS] {
+    JOINT_TABLE.map(|joint| short(joint.name))
+}
+
+/// The column of each of our joints among named columns; the name of the first that is missing.
+pub(super) fn columns(names: &[&str]) -> Result<[usize; JOINTS], &'static str> {
+    let mut columns = [0; JOINTS];
+    for (column, wanted) in columns.iter_mut().zip(ours()) {
+        let found = names.iter().position(|name| short(name) == wanted);
+        *column = found.ok_or(wanted)?;
+    }
+    Ok(columns)
+}
+
+/// Arrays of robot motion and the names that errors give them.
+pub(super) struct Table<'a> {
+    pub(super) position: (&'a Array, &'a str),
+    pub(super) orientation: (&'a Array, &'a str),
+    pub(super) joints: (&'a Array, &'a str),
+    /// Which column of `joints` each of ours is.
+    pub(super) columns: [usize; JOINTS],
+}
+
+impl Table<'_> {
+    /// The rows, checked: finite, as long as each other, unit quaternions.
+    pub(super) fn rows(
+        &self,
+        file: &File<'_>,
+        order: QuaternionOrder,
+    ) -> Result<Vec<Row>, MotionError> {
+        let ((p, p_name), (o, o_name), (j, j_name)) =
+            (self.position, self.orientation, self.joints);
+        p.check(file, p_name, &[3], PLACES)?;
+        o.check(file, o_name, &[4], (f64::INFINITY, ""))?;
+        j.check(file, j_name, &[j.width()], ANGLES)?;
+        o.check_length(file, o_name, self.position)?;
+        j.check_length(file, j_name, self.position)?;
+        (0..p.frames())
+            .map(|i| {
+                let quaternion = quaternion(o.frame(i), order);
+                check_unit(file, i, o_name, &quaternion)?;
+                Ok(Row {
+                    position: Vector3::from_column_slice(p.frame(i)),
+                    orientation: UnitQuaternion::from_quaternion(quaternion),
+                    joints: self.columns.map(|column| j.frame(i)[column]),
+                })
+            })
+            .collect()
+    }
+}
+
+/// Four numbers as a quaternion.
+pub(super) fn quaternion(numbers: &[f64], order: QuaternionOrder) -> Quaternion<f64> {
+    match order {
+        QuaternionOrder::Wxyz => Quaternion::new(numbers[0], numbers[1], numbers[2], numbers[3]),
+        QuaternionOrder::Xyzw => Quaternion::new(numbers[3], numbers[0], numbers[1], numbers[2]),
+    }
+}
+
+/// A quaternion of another length than 1 is another order, or none. Files keep about six digits.
+pub(super) fn check_unit(
+    file: &File<'_>,
+    frame: usize,
+    field: &str,
+    quaternion: &Quaternion<f64>,
+) -> Result<(), MotionError> {
+    if (quaternion.norm() - 1.0).abs() <= 0.01 {
+        return Ok(());
+    }
+    let problem = format!("the quaternion has length {:.3}", quaternion.norm());
+    Err(file.frame(
+        frame,
+        field,
+        problem,
+        "it must have length 1; normalise or export it again",
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_order_holds_every_joint_once() {
+        for names in [&SDK_29[..], &ISAAC_29, &ISAAC_23, &ours()] {
+            let columns = columns(names).unwrap();
+            for (column, ours) in columns.iter().zip(ours()) {
+                assert_eq!(names[*column], ours);
+            }
+            let mut sorted = names.to_vec();
+            sorted.sort_unstable();
+            sorted.dedup();
+            assert_eq!(sorted.len(), names.len());
+        }
+        // The 29-joint robot without six joints is ours, in our order.
+        let kept: Vec<_> = SDK_29
+            .iter()
+            .filter(|n| !DROPPED.contains(n))
+            .copied()
+            .collect();
+        assert_eq!(kept, ours());
+    }
+
+    #[test]
+    fn endings_do_not_matter_but_joints_must_be_there() {
+        assert_eq!(short("left_knee_joint_dof"), "left_knee");
+        let names: Vec<String> = SDK_29.iter().map(|n| format!("{n}_joint")).collect();
+        let mut names: Vec<&str> = names.iter().map(String::as_str).collect();
+        assert_eq!(columns(&names).unwrap()[12], 12);
+        names.retain(|name| *name != "left_knee_joint");
+        assert_eq!(columns(&names), Err("left_knee"));
+    }
+}
