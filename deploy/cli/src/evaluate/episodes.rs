@@ -100,7 +100,7 @@ impl<'a> Walker<'a> {
             for (robot, life) in robots.iter_mut().enumerate().filter(|(_, l)| !l.fallen) {
                 let (before, after) = block.transition(robot);
                 self.judge.take(before, after);
-                let last = fleet.last_step(robot);
+                let last = &fleet.last_step(robot);
                 tally.add(&block, robot, command, last, life.forces);
                 if conditions.traced {
                     tally.traces[robot].samples.push(sample(last));
