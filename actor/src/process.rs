@@ -62,7 +62,7 @@ pub fn run(run_dir: &Path, index: u32) -> Result<()> {
                     return Ok(());
                 }
                 let worker = worker.as_mut().context("weights came without an order")?;
-                worker.adopt(&header, newest.flat())?;
+                worker.adopt(&config, &header, newest.flat())?;
                 acting = Some(header);
                 break;
             }

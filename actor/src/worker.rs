@@ -10,7 +10,7 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 use run::Checkpoints;
 use serde::{Deserialize, Serialize};
-use sim::Fleet;
+use sim::{Fleet, TaskConfig};
 use tracing::{info, warn};
 
 use crate::collect::{Timing, collect};
@@ -44,7 +44,7 @@ impl Worker {
     ) -> Result<Self> {
         let seed = mix(mix(config.seed, u64::from(index) + 1), header.version);
         let fleet = Fleet::new(
-            &config.task,
+            &task_at(config, header),
             &config.randomization,
             config.starts.clone(),
             config.layout.environments,
@@ -118,7 +118,15 @@ impl Worker {
     }
 
     /// Takes over new weights; another shape is another policy.
-    pub(crate) fn adopt(&mut self, header: &WeightsHeader, flat: &[f32]) -> Result<()> {
+    pub(crate) fn adopt(
+        &mut self,
+        config: &ActorConfig,
+        header: &WeightsHeader,
+        flat: &[f32],
+    ) -> Result<()> {
+        if config.task.curriculum.is_some() {
+            self.fleet.set_task(task_at(config, header));
+        }
         let hidden = hidden(header);
         if self.policy.shape().hidden != hidden {
             self.policy = Policy::new(Shape { hidden });
@@ -154,6 +162,11 @@ fn hidden(header: &WeightsHeader) -> Vec<usize> {
 
 fn name(index: u32) -> String {
     format!("actor-{index}.bin")
+}
+
+/// The task by now: iterations of full batches have made the weights.
+fn task_at(config: &ActorConfig, header: &WeightsHeader) -> TaskConfig {
+    config.task.at((header.version * config.rows) as f64)
 }
 
 /// One well-mixed number of two (SplitMix64's finaliser), so that neighbours share no stream.

@@ -196,6 +196,15 @@ impl Fleet {
         self.environments[environment].command()
     }
 
+    /// Goes on with another task of the same physics: its rewards and ends count from the next step,
+    /// its commands and starts whenever they are drawn next.
+    pub fn set_task(&mut self, task: TaskConfig) {
+        self.setting.task = TaskConfig {
+            physics: self.setting.task.physics,
+            ..task
+        };
+    }
+
     /// Holds a command for the rest of an environment's episode. Its observation shows it at once.
     pub fn hold_command(&mut self, environment: usize, command: [f32; 3]) {
         self.environments[environment].hold_command(command);

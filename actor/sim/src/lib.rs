@@ -10,6 +10,7 @@
 //! | one episode's life | `env` |
 //! | memory for a step of a fleet | [`rows`] |
 //! | the task reward (Eq. 14), falls, time-outs | [`task`] |
+//! | a task that grows with the samples | [`curriculum`] |
 //! | commands c_t | [`command`] |
 //! | where episodes begin | [`start`] |
 //! | domain randomisation (Table I) | [`randomization`] |
@@ -22,6 +23,7 @@
 pub mod actuator;
 pub mod command;
 pub mod config;
+pub mod curriculum;
 pub mod engine;
 mod env;
 pub mod fleet;
@@ -36,6 +38,7 @@ pub mod world;
 pub use actuator::Gains;
 pub use command::CommandConfig;
 pub use config::Invalid;
+pub use curriculum::CurriculumConfig;
 pub use engine::Engine;
 pub use fleet::{Fleet, LastStep, SimError, StepOut};
 pub use model::Variation;

@@ -5,6 +5,7 @@
 
 use crate::command::CommandConfig;
 use crate::config::{self, Invalid};
+use crate::curriculum::CurriculumConfig;
 use crate::physics::Physics;
 use crate::start::StartConfig;
 use g1::RobotState;
@@ -38,6 +39,9 @@ pub struct TaskConfig {
     pub command: CommandConfig,
     /// Where episodes begin.
     pub start: StartConfig,
+    /// Where some of these values go as samples come in. Default: nowhere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub curriculum: Option<CurriculumConfig>,
 }
 
 impl Default for TaskConfig {
@@ -52,6 +56,7 @@ impl Default for TaskConfig {
             staggered: true,
             command: CommandConfig::default(),
             start: StartConfig::default(),
+            curriculum: None,
         }
     }
 }
@@ -81,7 +86,10 @@ impl TaskConfig {
             "give at least 1",
         )?;
         self.command.validate()?;
-        self.start.validate()
+        self.start.validate()?;
+        self.curriculum
+            .as_ref()
+            .map_or(Ok(()), CurriculumConfig::validate)
     }
 
     /// Task reward: rᴳ = exp(−k·(‖v* − v‖² + w·(ω* − ω)²))·r_upright   (Eq. 14; w = 0 in the paper)
