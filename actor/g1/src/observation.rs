@@ -34,6 +34,7 @@ pub const FEATURE_JOINT_VELOCITY: Range<usize> = 30..53;
 ///
 /// # Panics
 /// If `out` is not 82 long.
+#[inline]
 pub fn policy_observation(
     state: &RobotState,
     command: &[f32; crate::COMMAND],
@@ -55,6 +56,7 @@ pub fn policy_observation(
 ///
 /// # Panics
 /// If `out` is not 53 long.
+#[inline]
 pub fn features(state: &RobotState, out: &mut [f32]) {
     assert_eq!(out.len(), FEATURES, "the features of a step are 53 numbers");
     write_base(state, out);

@@ -40,23 +40,27 @@ impl RobotState {
     }
 
     /// Direction of gravity in the base frame, unit length: (0, 0, −1) when upright.
+    #[inline]
     pub fn projected_gravity(&self) -> Vector3<f32> {
         self.orientation.inverse_transform_vector(&-Vector3::z())
     }
 
     /// Velocity of the pelvis in the base frame, m/s.
+    #[inline]
     pub fn velocity_in_base(&self) -> Vector3<f32> {
         self.orientation
             .inverse_transform_vector(&self.linear_velocity)
     }
 
     /// Angular velocity of the pelvis in the base frame, rad/s.
+    #[inline]
     pub fn angular_velocity_in_base(&self) -> Vector3<f32> {
         self.orientation
             .inverse_transform_vector(&self.angular_velocity)
     }
 
     /// Planar velocity in the heading frame, m/s: the world turned by yaw only, x where the robot faces.
+    #[inline]
     pub fn velocity_in_heading(&self) -> Vector2<f32> {
         let (sin, cos) = self.yaw().sin_cos();
         let v = self.linear_velocity;
@@ -64,12 +68,14 @@ impl RobotState {
     }
 
     /// Heading of the pelvis, rad in (−π, π]: the yaw of R = Rz(yaw)·Ry(pitch)·Rx(roll).
+    #[inline]
     pub fn yaw(&self) -> f32 {
         let q = self.orientation;
         (2.0 * (q.w * q.k + q.i * q.j)).atan2(1.0 - 2.0 * (q.j * q.j + q.k * q.k))
     }
 
     /// Whether every number is finite.
+    #[inline]
     pub fn is_finite(&self) -> bool {
         self.position.iter().all(|x| x.is_finite())
             && self.orientation.coords.iter().all(|x| x.is_finite())

@@ -294,7 +294,16 @@ impl Fleet {
                 );
             }
             environment.proceed(&self.setting, &mut self.bodies, i, outcome.end);
-            self.look(i);
+            environment.observe(
+                &self.setting.randomization,
+                &mut self.observations[i * OBSERVATION..][..OBSERVATION],
+            );
+            let features = &mut self.features[i * FEATURES..][..FEATURES];
+            if outcome.end == End::Running {
+                features.copy_from_slice(&out.next_features[i * FEATURES..][..FEATURES]);
+            } else {
+                observation::features(environment.state(), features);
+            }
         }
     }
 

@@ -18,11 +18,16 @@ struct Embedded {
     walks: bool,
 }
 
-const EMBEDDED: [Embedded; 3] = [
+const EMBEDDED: [Embedded; 4] = [
     Embedded {
         name: "ampco",
         text: include_str!("../../presets/ampco.toml"),
         walks: true,
+    },
+    Embedded {
+        name: "ampco-literal",
+        text: include_str!("../../presets/ampco-literal.toml"),
+        walks: false,
     },
     Embedded {
         name: "amp-0.5",
