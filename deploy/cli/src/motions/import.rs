@@ -40,7 +40,7 @@ impl Import {
         let mut out = std::io::stdout().lock();
         let verbose = self.verbose || reads.len() <= TOLD;
         let (mut rows, mut failures) = (Vec::new(), Vec::new());
-        if !self.json {
+        if !self.json && reads.iter().any(|read| read.outcome.is_ok()) {
             writeln!(out, "{}", table::HEADING)?;
         }
         for read in &reads {
@@ -65,7 +65,7 @@ impl Import {
         }
         if self.json {
             writeln!(out, "{}", Value::Array(rows))?;
-        } else {
+        } else if failures.len() < reads.len() {
             summary(&mut out, &reads, &self.out, verbose)?;
         }
         match failures.as_slice() {

@@ -4,10 +4,10 @@
 
 use motion::Quality;
 
-/// Heading of [`line`].
+/// Heading of [`line()`].
 pub(super) const HEADING: &str = "\
-                                 s    m/s    slip  below  duty  flight  peak  limits
-                                            m/s     mm                  motor";
+clip                              s    m/s    slip  below  duty  flight  peak  limits
+                                              m/s     mm                motor";
 
 /// A clip's figures: duration, speed, slip of standing feet (median), deepest sole, share of time that
 /// a foot stands, share of flight, greatest joint speed over its motor's, joints beyond limits.
