@@ -7,6 +7,7 @@
 //! | `config.toml` | the fully resolved configuration | `ampco train` | [`config`] |
 //! | `metrics.jsonl` | one line of figures per iteration | the learner | [`metrics`] |
 //! | `checkpoints/<iteration>/` | everything that an exact continuation needs | learner, actors | [`checkpoint`] |
+//! | `evaluation/<suite>/` | reports and figures | `ampco evaluate` | – |
 //! | `logs/<process>.log` | the events of one process | that process | [`log`] |
 //! | `<role>.lock` | who is alive in this run | that process | [`folder`] |
 //!

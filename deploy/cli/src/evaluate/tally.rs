@@ -72,7 +72,9 @@ impl Tally {
 
     /// What the gait is.
     fn verdict(&self) -> Verdict {
-        let seconds = (self.fallen > 0).then(|| self.seconds_survived());
+        // Of short episodes one fall among many would make the mean a short life.
+        let most_fell = 2 * self.fallen > self.episodes;
+        let seconds = most_fell.then(|| self.seconds_survived());
         Verdict::of(&Signs::of(&self.gait, &self.pace, seconds, CONTROL_HZ))
     }
 
@@ -199,5 +201,17 @@ mod tests {
         assert_eq!(outcome.rmse_forward, 0.4); // √(64 / 400)
         assert_eq!(outcome.rmse_yaw_rate, 0.1);
         assert_eq!(outcome.energy_j, 2_000.0); // 2 J a step
+    }
+
+    #[test]
+    fn one_fall_among_many_short_episodes_is_no_verdict() {
+        let tally = |fallen| Tally {
+            episodes: 16,
+            fallen,
+            steps: 800.0, // one second each
+            ..Tally::default()
+        };
+        assert!(tally(9).outcome().gait.starts_with("fall"));
+        assert!(!tally(1).outcome().gait.starts_with("fall"));
     }
 }
