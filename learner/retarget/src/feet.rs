@@ -176,7 +176,7 @@ fn foot_path(
             .sum::<Vector3<f64>>()
             / (end - first) as f64;
         anchor.z = 0.0; // the ground
-        for i in first..end {
+        (first..end).for_each(|i| {
             let shift = anchor + sole(i).translation.vector - place(i);
             let twist = (sole(i).rotation * turn(i).inverse()).scaled_axis();
             moved = moved.max(shift.xy().norm());
@@ -184,7 +184,7 @@ fn foot_path(
                 correction[axis][i] = Some(shift[axis]);
                 correction[axis + 3][i] = Some(twist[axis]);
             }
-        }
+        });
     }
     let correction = correction.map(|series| bridged(&series));
     let vector = |i: usize, from: usize| Vector3::from_fn(|axis, _| correction[from + axis][i]);

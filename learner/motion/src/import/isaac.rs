@@ -134,10 +134,10 @@ pub(super) fn gym(
     let frames: Vec<Vec<Isometry3<f64>>> = (0..root.frames())
         .map(|i| {
             let mut frames: Vec<Isometry3<f64>> = Vec::with_capacity(names.len());
-            for node in 0..names.len() {
+            for (node, name) in names.iter().enumerate() {
                 let numbers = &rotation.frame(i)[4 * node..4 * node + 4];
                 let quaternion = joints::quaternion(numbers, QuaternionOrder::Xyzw);
-                joints::check_unit(file, i, &names[node], &quaternion)?;
+                joints::check_unit(file, i, name, &quaternion)?;
                 let turn = UnitQuaternion::from_quaternion(quaternion);
                 // A parent stands before its children; the root's is −1.
                 let parent = (parents.values[node] as isize)

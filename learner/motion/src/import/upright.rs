@@ -113,7 +113,7 @@ mod tests {
             path: Path::new("walk.csv"),
             bytes: b"",
         };
-        for heading in [0.0, 0.8, 1.57, 2.5, 3.14, -2.0, -0.3] {
+        for heading in [0.0, 0.8, 1.57, 2.5, 3.1, -2.0, -0.3] {
             let rows = walk(heading);
             let (order, told) = decide(&file, &rows, 50.0, None).unwrap();
             assert_eq!(order, QuaternionOrder::Wxyz, "{heading}: {told}");
