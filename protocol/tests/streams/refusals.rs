@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use protocol::{
-    DomainError, Node, PortError, RolloutLayout, RolloutPublisher, RolloutSubscriber, Shutdown,
-    WeightsHeader, WeightsOrder, WeightsPublisher, WeightsSubscriber,
+    DomainError, Node, PROTOCOL_VERSION, PortError, RolloutLayout, RolloutPublisher,
+    RolloutSubscriber, Shutdown, WeightsHeader, WeightsOrder, WeightsPublisher, WeightsSubscriber,
 };
 
 use crate::harness::{DEADLINE, LAYOUT, Run};
@@ -21,10 +21,11 @@ fn another_version_is_refused_and_both_are_named() {
     let PortError::Version { theirs, ours, .. } = &error else {
         panic!("{error}");
     };
-    assert_eq!((theirs.as_str(), *ours), ("1", 7002));
+    let spoken = PROTOCOL_VERSION.to_string();
+    assert_eq!((theirs.as_str(), *ours), (spoken.as_str(), 7002));
     let text = error.to_string();
     assert!(
-        text.contains("version 1") && text.contains("7002"),
+        text.contains(&format!("version {spoken}")) && text.contains("7002"),
         "{text}"
     );
 }
