@@ -13,6 +13,8 @@
 //! | what the policy and the discriminator see | [`observation`] |
 //! | left–right reflection | [`mirror`] |
 //! | forward kinematics, Jacobian, foot and mass points | [`kinematics`] |
+//! | what the bodies look like in pictures | [`shapes`] |
+//! | the same robot as MJCF, for MuJoCo | [`mjcf`] |
 #![forbid(unsafe_code)]
 
 pub mod gait;
@@ -20,7 +22,9 @@ pub mod joints;
 pub mod kinematics;
 pub mod links;
 pub mod mirror;
+pub mod mjcf;
 pub mod observation;
+pub mod shapes;
 pub mod state;
 
 pub use joints::{ACTION_SCALE, DEFAULT_POSE, JOINT_TABLE, Joint};

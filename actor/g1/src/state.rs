@@ -86,6 +86,11 @@ impl RobotState {
     }
 }
 
+/// The rotation of a quaternion w x y z, which need not have length 1.
+pub fn quaternion(w: f32, x: f32, y: f32, z: f32) -> UnitQuaternion<f32> {
+    UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -28,4 +28,4 @@ pub use elu::elu;
 pub use error::PolicyError;
 pub use gaussian::Gaussian;
 pub use policy::{CLIP, Policy};
-pub use shape::{INPUTS, OUTPUTS, Shape};
+pub use shape::{INPUTS, INVERSE_DEVIATION, LayerPlace, MEAN, OUTPUTS, SIGMA, Shape};

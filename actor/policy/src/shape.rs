@@ -22,19 +22,23 @@ pub struct Shape {
 
 /// Where one layer's numbers are in the flat vector.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct LayerPlace {
-    pub(crate) inputs: usize,
-    pub(crate) outputs: usize,
-    pub(crate) weights: Range<usize>,
-    pub(crate) bias: Range<usize>,
+pub struct LayerPlace {
+    /// Numbers that go in.
+    pub inputs: usize,
+    /// Numbers that come out.
+    pub outputs: usize,
+    /// Its weights `[in][out]`, row by row.
+    pub weights: Range<usize>,
+    /// Its bias `[out]`.
+    pub bias: Range<usize>,
 }
 
-/// Observation means.
-pub(crate) const MEAN: Range<usize> = 0..INPUTS;
-/// Observation inverse standard deviations.
-pub(crate) const INVERSE_DEVIATION: Range<usize> = INPUTS..2 * INPUTS;
-/// Exploration standard deviations.
-pub(crate) const SIGMA: Range<usize> = 2 * INPUTS..2 * INPUTS + OUTPUTS;
+/// Observation means, in the flat vector.
+pub const MEAN: Range<usize> = 0..INPUTS;
+/// Observation inverse standard deviations, in the flat vector.
+pub const INVERSE_DEVIATION: Range<usize> = INPUTS..2 * INPUTS;
+/// Exploration standard deviations, in the flat vector.
+pub const SIGMA: Range<usize> = 2 * INPUTS..2 * INPUTS + OUTPUTS;
 
 impl Shape {
     /// A policy with these hidden layers.
@@ -57,7 +61,7 @@ impl Shape {
     }
 
     /// Every layer's place, from the observation on.
-    pub(crate) fn layers(&self) -> impl Iterator<Item = LayerPlace> + '_ {
+    pub fn layers(&self) -> impl Iterator<Item = LayerPlace> + '_ {
         let outputs = self.hidden.iter().copied().chain([OUTPUTS]);
         outputs.scan((SIGMA.end, INPUTS), |(start, inputs), outputs| {
             let weights = *start..*start + *inputs * outputs;

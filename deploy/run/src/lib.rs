@@ -6,6 +6,7 @@
 //! | --- | --- | --- | --- |
 //! | `config.toml` | the fully resolved configuration | `ampco train` | [`config`] |
 //! | `metrics.jsonl` | one line of figures per iteration | the learner | [`metrics`] |
+//! | `events.out.tfevents.…` | the same figures for TensorBoard, a file per start | the learner | [`events`] |
 //! | `checkpoints/<iteration>/` | everything that an exact continuation needs | learner, actors | [`checkpoint`] |
 //! | `evaluation/<suite>/` | reports and figures | `ampco evaluate` | – |
 //! | `logs/<process>.log` | the events of one process | that process | [`log`] |
@@ -17,6 +18,7 @@
 
 pub mod checkpoint;
 pub mod config;
+pub mod events;
 pub mod folder;
 pub mod log;
 pub mod metrics;
@@ -28,6 +30,7 @@ mod replace;
 
 pub use checkpoint::{Checkpoint, CheckpointError, Checkpoints};
 pub use config::{Config, ConfigError};
+pub use events::Events;
 pub use folder::{Folder, FolderError, Lock};
 pub use metrics::{Metrics, MetricsError};
 pub use replace::replace_file;

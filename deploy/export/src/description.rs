@@ -1,0 +1,321 @@
+//! `policy.json`: everything that has to be known to run the policy on a robot or in a simulator.
+//!
+//! Separate because it is a contract with programs that are not ours: whoever implements what is written there, in the
+//! units and frames that are written there, has the environment that the policy was trained in.
+
+use std::collections::BTreeMap;
+
+use g1::{ACTION_SCALE, JOINT_TABLE, OBSERVATION, RobotState, observation};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::network::Network;
+use crate::onnx;
+
+/// What `format` says.
+pub const FORMAT: &str = "ampco policy";
+/// What `version` says; a reader refuses a greater one.
+pub const VERSION: u32 = 1;
+
+/// The whole file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Description {
+    /// [`FORMAT`].
+    pub format: String,
+    /// [`VERSION`].
+    pub version: u32,
+    /// Where the policy comes from.
+    pub origin: Origin,
+    /// The network's file, its input and output.
+    pub network: NetworkDescription,
+    /// From an action to torques, and how often.
+    pub control: Control,
+    /// The joints, in the order of every vector of 23 numbers.
+    pub joints: Vec<JointDescription>,
+    /// The terms of an observation, in order and without gaps.
+    pub observation: Vec<Term>,
+    /// One observation and the action that belongs to it, to check an installation with.
+    pub example: Example,
+    /// The `[task]` section that it was trained under: when a robot has fallen, how rewards are computed.
+    pub task: Value,
+    /// The rows of domain randomisation (Table I) with their ranges.
+    pub randomization: Value,
+}
+
+/// Which training made the policy.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Origin {
+    /// The run's name.
+    pub run: String,
+    /// Iterations that it was trained for.
+    pub iteration: u64,
+    /// SHA-256 of the flat weights, little-endian f32; it names the policy whatever file it is in.
+    pub weights_sha256: String,
+    /// SHA-256 of the run's `config.toml`.
+    pub config_sha256: String,
+    /// SHA-256 of each file beside this one, by name.
+    pub files_sha256: BTreeMap<String, String>,
+}
+
+/// The network.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NetworkDescription {
+    /// Name of the ONNX input, `[batch, 82]`.
+    pub input: String,
+    /// Name of the ONNX output, `[batch, 23]`.
+    pub output: String,
+    /// Widths of the hidden layers, ELU after each.
+    pub hidden: Vec<usize>,
+    /// What is done to an observation first; it is inside the ONNX model.
+    pub normalisation: String,
+    /// Normalised observations are cut to ± this.
+    pub clip: f32,
+}
+
+/// From an action to torques.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Control {
+    /// Actions per second.
+    pub policy_hz: f64,
+    /// Physics steps per second of the simulation; torques are computed anew in each.
+    pub physics_hz: f64,
+    /// Radians of target per unit of action.
+    pub action_scale: f32,
+    /// The law in words.
+    pub law: String,
+    /// The previous action of the first observation.
+    pub first_previous_action: f32,
+}
+
+/// A joint.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct JointDescription {
+    /// Name in Unitree's URDF.
+    pub name: String,
+    /// rad.
+    pub default_position: f64,
+    /// rad.
+    pub lower: f64,
+    /// rad.
+    pub upper: f64,
+    /// N·m/rad.
+    pub kp: f64,
+    /// N·m·s/rad.
+    pub kd: f64,
+    /// N·m.
+    pub effort: f64,
+    /// rad/s.
+    pub velocity_limit: f64,
+    /// kg·m².
+    pub armature: f64,
+}
+
+/// A stretch of the observation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Term {
+    /// What it is.
+    pub name: String,
+    /// Index of its first number.
+    pub start: usize,
+    /// How many numbers.
+    pub length: usize,
+    /// Their unit.
+    pub unit: String,
+    /// The frame that they are in.
+    pub frame: String,
+    /// What a quantity in its unit is multiplied by before it is put into the observation.
+    pub scale: f32,
+    /// In words.
+    pub meaning: String,
+}
+
+/// An observation and its action.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Example {
+    /// Standing in the default pose, asked to walk forward at 0.5 m/s.
+    pub observation: Vec<f32>,
+    /// The policy's action.
+    pub action: Vec<f32>,
+}
+
+impl Description {
+    /// Of a network; `rates` are those of the policy and of physics, Hz.
+    pub fn new(
+        network: &Network,
+        origin: Origin,
+        rates: [f64; 2],
+        task: Value,
+        randomization: Value,
+    ) -> Self {
+        let [policy_hz, physics_hz] = rates;
+        Self {
+            format: FORMAT.to_owned(),
+            version: VERSION,
+            origin,
+            network: NetworkDescription {
+                input: onnx::INPUT.to_owned(),
+                output: onnx::OUTPUT.to_owned(),
+                hidden: network.hidden().to_vec(),
+                normalisation: "clip((observation − mean)·inverse_deviation, ±clip)".to_owned(),
+                clip: policy::CLIP,
+            },
+            control: Control {
+                policy_hz,
+                physics_hz,
+                action_scale: ACTION_SCALE,
+                law: "target = default_position + action_scale·action, held between actions; \
+                      torque = kp·(target − q) − kd·q̇ in every physics step, at most ±effort"
+                    .to_owned(),
+                first_previous_action: 0.0,
+            },
+            joints: joints(),
+            observation: observation_terms(),
+            example: example(network),
+            task,
+            randomization,
+        }
+    }
+}
+
+fn joints() -> Vec<JointDescription> {
+    JOINT_TABLE
+        .iter()
+        .map(|joint| JointDescription {
+            name: joint.name.to_owned(),
+            default_position: joint.default_position,
+            lower: joint.lower,
+            upper: joint.upper,
+            kp: joint.kp,
+            kd: joint.kd,
+            effort: joint.effort,
+            velocity_limit: joint.velocity_limit,
+            armature: joint.armature,
+        })
+        .collect()
+}
+
+fn observation_terms() -> Vec<Term> {
+    let height = observation::HEIGHT..observation::HEIGHT + 1;
+    let rows = [
+        (
+            "pelvis_height",
+            height,
+            "m",
+            "world",
+            "z of the pelvis link's origin above the ground",
+        ),
+        (
+            "linear_velocity",
+            observation::LINEAR_VELOCITY,
+            "m/s",
+            "base",
+            "velocity of the pelvis link's origin",
+        ),
+        (
+            "angular_velocity",
+            observation::ANGULAR_VELOCITY,
+            "rad/s",
+            "base",
+            "of the pelvis",
+        ),
+        (
+            "projected_gravity",
+            observation::GRAVITY,
+            "1",
+            "base",
+            "direction of gravity, unit length: (0, 0, -1) upright",
+        ),
+        (
+            "command",
+            observation::COMMAND,
+            "m/s, m/s, rad/s",
+            "heading",
+            "forward and leftward velocity, yaw rate that are asked for",
+        ),
+        (
+            "joint_position",
+            observation::JOINT_POSITION,
+            "rad",
+            "joint",
+            "less the default position",
+        ),
+        (
+            "joint_velocity",
+            observation::JOINT_VELOCITY,
+            "rad/s",
+            "joint",
+            "",
+        ),
+        (
+            "previous_action",
+            observation::PREVIOUS_ACTION,
+            "1",
+            "joint",
+            "the network's output one step before",
+        ),
+    ];
+    rows.map(|(name, numbers, unit, frame, meaning)| Term {
+        name: name.to_owned(),
+        start: numbers.start,
+        length: numbers.len(),
+        unit: unit.to_owned(),
+        frame: frame.to_owned(),
+        scale: 1.0,
+        meaning: meaning.to_owned(),
+    })
+    .into()
+}
+
+fn example(network: &Network) -> Example {
+    let mut observation = [0.0; OBSERVATION];
+    observation::policy_observation(
+        &RobotState::standing(),
+        &[0.5, 0.0, 0.0],
+        &[0.0; g1::ACTION],
+        &mut observation,
+    );
+    Example {
+        observation: observation.to_vec(),
+        action: network.action(&observation).to_vec(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use policy::Shape;
+
+    #[test]
+    fn terms_cover_the_observation_without_gaps() {
+        let mut next = 0;
+        for term in observation_terms() {
+            assert_eq!(term.start, next, "{}", term.name);
+            next += term.length;
+        }
+        assert_eq!(next, OBSERVATION);
+    }
+
+    #[test]
+    fn the_example_is_what_the_network_does() {
+        // Weights of zero but for the last bias: the action is that bias, whatever is observed.
+        let shape = Shape::new(&[]);
+        let mut flat = vec![0.0; shape.len()];
+        flat[policy::SIGMA].fill(1.0);
+        let first = flat.len() - g1::ACTION;
+        flat[first + 3] = 0.75;
+        let network = Network::new(shape, flat).unwrap();
+        let description = Description::new(
+            &network,
+            Origin::default(),
+            [50.0, 200.0],
+            Value::Null,
+            Value::Null,
+        );
+        assert_eq!(description.example.action[3], 0.75);
+        assert_eq!(description.example.observation[10], 0.5);
+        let text = serde_json::to_string(&description).unwrap();
+        let back: Description = serde_json::from_str(&text).unwrap();
+        assert_eq!(back, description);
+        assert_eq!(back.joints[3].name, "left_knee_joint");
+    }
+}

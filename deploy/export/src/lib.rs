@@ -1,0 +1,21 @@
+//! A trained policy in the formats of others, as bytes: what a simulator or a robot needs to run it.
+//!
+//! Separate, and pure, because an export is read by people who have nothing else of ours: what is in it must be
+//! complete and must mean the same there as here.
+//!
+//! | file | what | module |
+//! | --- | --- | --- |
+//! | `policy.onnx` | observation in, deterministic action out; normalisation inside | [`onnx`] |
+//! | `policy.safetensors` | the same weights under the names of a PyTorch `Sequential` | [`tensors`] |
+//! | `policy.json` | joints, gains, observation layout, rates, where it comes from | [`description`] |
+//!
+//! Writing files is the caller's business.
+#![forbid(unsafe_code)]
+
+pub mod description;
+pub mod network;
+pub mod onnx;
+pub mod tensors;
+
+pub use description::{Description, Origin};
+pub use network::Network;

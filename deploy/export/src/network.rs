@@ -1,0 +1,100 @@
+//! The weights that are exported, checked once.
+
+use policy::{
+    INPUTS, INVERSE_DEVIATION, LayerPlace, MEAN, OUTPUTS, Policy, PolicyError, SIGMA, Shape,
+};
+use sha2::{Digest, Sha256};
+
+/// A policy network as flat weights that fit its shape and are finite.
+#[derive(Clone, Debug)]
+pub struct Network {
+    shape: Shape,
+    flat: Vec<f32>,
+}
+
+impl Network {
+    /// From flat weights in the layout of [`Shape`].
+    ///
+    /// # Errors
+    /// Where the policy itself would refuse them: wrong length, not finite, no width.
+    pub fn new(shape: Shape, flat: Vec<f32>) -> Result<Self, PolicyError> {
+        Policy::new(shape.clone()).load(&flat)?;
+        Ok(Self { shape, flat })
+    }
+
+    /// Widths of its hidden layers.
+    pub fn hidden(&self) -> &[usize] {
+        &self.shape.hidden
+    }
+
+    /// Observation means `[82]`.
+    pub fn mean(&self) -> &[f32] {
+        &self.flat[MEAN]
+    }
+
+    /// Observation inverse standard deviations `[82]`.
+    pub fn inverse_deviation(&self) -> &[f32] {
+        &self.flat[INVERSE_DEVIATION]
+    }
+
+    /// Standard deviation of exploration per action `[23]`; a deployed policy does not explore.
+    pub fn sigma(&self) -> &[f32] {
+        &self.flat[SIGMA]
+    }
+
+    /// Every layer with its weights `[in][out]`, row by row, and its bias `[out]`.
+    pub fn layers(&self) -> impl Iterator<Item = (LayerPlace, &[f32], &[f32])> {
+        self.shape.layers().map(|place| {
+            let (weights, bias) = (
+                &self.flat[place.weights.clone()],
+                &self.flat[place.bias.clone()],
+            );
+            (place, weights, bias)
+        })
+    }
+
+    /// The action of one observation, by this project's own inference.
+    pub fn action(&self, observation: &[f32; INPUTS]) -> [f32; OUTPUTS] {
+        let mut policy = Policy::new(self.shape.clone());
+        policy.load(&self.flat).expect("checked when it was made");
+        let mut action = [0.0; OUTPUTS];
+        policy.means(observation, 1, &mut action);
+        action
+    }
+
+    /// SHA-256 of the flat weights as little-endian f32, in hexadecimal.
+    pub fn hash(&self) -> String {
+        let bytes: Vec<u8> = self.flat.iter().flat_map(|x| x.to_le_bytes()).collect();
+        sha256(&bytes)
+    }
+}
+
+/// SHA-256 in hexadecimal, as `sha256sum` prints it.
+pub fn sha256(bytes: &[u8]) -> String {
+    let digest = Sha256::digest(bytes);
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hashes_are_the_published_ones() {
+        // FIPS 180-2, appendix B.1.
+        assert_eq!(
+            sha256(b"abc"),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+        );
+    }
+
+    #[test]
+    fn weights_that_the_policy_refuses_are_not_exported() {
+        let shape = Shape::new(&[4]);
+        let error = Network::new(shape.clone(), vec![1.0; 3]).unwrap_err();
+        assert!(matches!(error, PolicyError::Length { found: 3, .. }));
+        let mut flat = vec![1.0; shape.len()];
+        flat[200] = f32::NAN;
+        assert!(Network::new(shape, flat).is_err());
+    }
+}

@@ -1,0 +1,64 @@
+//! The exported ONNX model in another runtime, compared with this project's own inference.
+
+use export::{Network, onnx};
+use policy::{INPUTS, OUTPUTS, Policy, SIGMA, Shape};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use rten::Model;
+use rten_tensor::prelude::*;
+use rten_tensor::{NdTensor, Tensor};
+
+/// Weights of the size that training makes: means of order 1, deviations from 0.05 to 20, layers that keep variance.
+fn network(hidden: &[usize], random: &mut Pcg64) -> (Shape, Vec<f32>) {
+    let shape = Shape::new(hidden);
+    let mut flat = vec![0.0; shape.len()];
+    for value in &mut flat[..INPUTS] {
+        *value = random.random_range(-1.0..1.0);
+    }
+    for value in &mut flat[INPUTS..SIGMA.start] {
+        *value = random.random_range(0.05..20.0);
+    }
+    flat[SIGMA].fill(0.3);
+    for layer in shape.layers() {
+        let width = (3.0 / layer.inputs as f32).sqrt();
+        for value in &mut flat[layer.weights.start..layer.bias.end] {
+            *value = random.random_range(-width..width);
+        }
+    }
+    (shape, flat)
+}
+
+#[test]
+fn another_runtime_gives_the_same_actions() {
+    let mut random = Pcg64::seed_from_u64(7);
+    for hidden in [&[][..], &[256, 128], &[512, 256, 128]] {
+        let (shape, flat) = network(hidden, &mut random);
+        let mut ours = Policy::new(shape.clone());
+        ours.load(&flat).unwrap();
+        let model = onnx::model(&Network::new(shape, flat).unwrap(), &[("run", "test")]);
+        let theirs = Model::load(model).unwrap();
+        // Batches of different sizes go through the same file; large numbers reach the clipping.
+        for rows in [1, 7, 992] {
+            let seen: Vec<f32> = (0..rows * INPUTS)
+                .map(|_| random.random_range(-3.0..3.0))
+                .collect();
+            let mut expected = vec![0.0; rows * OUTPUTS];
+            ours.means(&seen, rows, &mut expected);
+            let input = NdTensor::from_data([rows, INPUTS], seen);
+            let got: Tensor<f32> = theirs
+                .run_one(input.into(), None)
+                .unwrap()
+                .try_into()
+                .unwrap();
+            assert_eq!(got.shape(), [rows, OUTPUTS]);
+            let worst = got
+                .iter()
+                .zip(&expected)
+                .map(|(a, b)| (a - b).abs())
+                .fold(0.0, f32::max);
+            assert!(worst < 1e-5, "{hidden:?}, {rows} rows: {worst}");
+            let largest = expected.iter().fold(0.0_f32, |m, x| m.max(x.abs()));
+            assert!(largest > 0.1, "the actions are not all nothing: {largest}");
+        }
+    }
+}
