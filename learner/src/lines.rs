@@ -1,6 +1,6 @@
 //! The learner's lines to the outside: streams, metrics, checkpoints.
 
-use std::time::Duration;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use ampco::Schedule;
 use anyhow::{Context, Result};
@@ -8,7 +8,9 @@ use protocol::{
     DirectiveSubscriber, Domain, Node, RewardPublisher, RolloutSubscriber, Shutdown, WeightsHeader,
     WeightsOrder, WeightsPublisher,
 };
-use run::{Folder, Metrics};
+use run::{Events, Folder, Metrics};
+use serde::Serialize;
+use tracing::warn;
 
 use crate::config::LearnerConfig;
 use crate::guidance::Guidance;
@@ -19,6 +21,8 @@ pub(crate) struct Lines {
     pub(crate) intake: Intake,
     pub(crate) guidance: Guidance,
     pub(crate) metrics: Metrics,
+    /// None once it could not be written.
+    events: Option<Events>,
     rewards: RewardPublisher,
     weights: WeightsPublisher,
 }
@@ -56,6 +60,9 @@ impl Lines {
             intake: Intake::new(rollouts, node.incarnation(), config.fleet.actors, terms),
             guidance,
             metrics: Metrics::open(&folder.metrics_path())?,
+            events: Events::create(folder.path(), state.iteration, now())
+                .map_err(without_events)
+                .ok(),
             rewards: RewardPublisher::new(&node).context("opening the reward stream")?,
             weights: WeightsPublisher::new(&node, state.learning.policy_flat().len())
                 .context("opening the weights stream")?,
@@ -65,6 +72,20 @@ impl Lines {
             lines.rewards.send(report.message())?;
         }
         Ok(lines)
+    }
+
+    /// A line of the metrics, and the same figures for TensorBoard.
+    pub(crate) fn log(&mut self, record: &impl Serialize) -> Result<()> {
+        self.metrics.append(record)?;
+        if let Some(events) = &mut self.events {
+            let written = serde_json::to_value(record)
+                .map_err(std::io::Error::from)
+                .and_then(|figures| events.append(&figures, now()));
+            if written.map_err(without_events).is_err() {
+                self.events = None;
+            }
+        }
+        Ok(())
     }
 
     /// Tells the scheduler how iteration `state.iteration` was paid.
@@ -94,4 +115,15 @@ impl Lines {
             .broadcast(header, state.learning.policy_flat())
             .with_context(|| format!("broadcasting policy version {}", state.iteration))
     }
+}
+
+/// A view of the figures is not worth a run.
+fn without_events(problem: std::io::Error) {
+    warn!(%problem, "no more TensorBoard events; the metrics go on");
+}
+
+/// Seconds since 1970, as TensorBoard's time axis has it.
+fn now() -> f64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH);
+    since.map_or(0.0, |since| since.as_secs_f64())
 }

@@ -158,13 +158,13 @@ impl Loop {
                 let idle_share = self.cores.idle_share();
                 let mut record = self.record(lines, state, &measures, guide, report, span);
                 record.timing.idle_share = idle_share;
-                lines.metrics.append(&record)?;
+                lines.log(&record)?;
                 lines.report(state)
             }
             Err(problem) => {
                 self.refusals += 1;
                 error!(iteration = state.iteration, %problem, "update refused; the last good weights stay");
-                lines.metrics.append(&Refused {
+                lines.log(&Refused {
                     iteration: state.iteration,
                     samples: state.samples,
                     fault: problem.to_string(),
