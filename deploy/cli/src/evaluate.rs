@@ -10,7 +10,7 @@ mod reference;
 mod report;
 mod scenario;
 mod spread;
-mod subject;
+pub(crate) mod subject;
 mod table;
 mod tally;
 

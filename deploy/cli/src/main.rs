@@ -10,11 +10,13 @@ mod child;
 mod console;
 mod engine;
 mod evaluate;
+mod export;
 mod failure;
 mod figures;
 mod motions;
 mod place;
 mod plot;
+mod play;
 mod presets;
 mod resolve;
 mod status;
@@ -43,6 +45,8 @@ Examples:
   ampco evaluate walk --suite standard            everything it should be able to do, as a report
   ampco plot walk                                 its learning curves, as SVG
   ampco motions import 02_01.amc --out walks      motion capture, onto the robot
+  ampco export walk --out walk-policy             policy.onnx and all that a robot needs
+  ampco play walk --html walk.html                a page that plays it
   ampco bench sim                                 how fast this machine simulates
 
 A run lives in runs/<name>/: config.toml (every value, defaults included), metrics.jsonl (a line per
@@ -64,6 +68,8 @@ enum Command {
     Evaluate(evaluate::Evaluate),
     Plot(plot::Plot),
     Motions(motions::Motions),
+    Export(export::Export),
+    Play(play::Play),
     Bench(bench::Bench),
 }
 
@@ -78,6 +84,8 @@ fn main() -> ExitCode {
         Command::Evaluate(evaluate) => evaluate.run(),
         Command::Plot(plot) => plot.run(),
         Command::Motions(motions) => motions.run(),
+        Command::Export(export) => export.run(),
+        Command::Play(play) => play.run(),
         Command::Bench(bench) => bench.run(),
     };
     match done {

@@ -14,25 +14,25 @@ use crate::failure::usage;
 use crate::place::Place;
 
 /// A checkpoint with its configuration.
-pub(super) struct Kept {
-    pub(super) path: PathBuf,
-    pub(super) iteration: u64,
-    pub(super) learning: LearningConfig,
+pub(crate) struct Kept {
+    pub(crate) path: PathBuf,
+    pub(crate) iteration: u64,
+    pub(crate) learning: LearningConfig,
     config: Config,
     checkpoint: Checkpoint,
 }
 
 /// A policy with its task.
-pub(super) struct Subject {
-    pub(super) kept: Kept,
-    pub(super) task: TaskConfig,
+pub(crate) struct Subject {
+    pub(crate) kept: Kept,
+    pub(crate) task: TaskConfig,
     pub(super) reference: Reference,
 }
 
 impl Kept {
     /// Opens what `name` means: a checkpoint's folder (of a run, or shipped with a `config.toml`
     /// beside its parts), or a run, whose newest checkpoint it is then.
-    pub(super) fn open(place: &Place, name: &str) -> Result<Self> {
+    pub(crate) fn open(place: &Place, name: &str) -> Result<Self> {
         let given = Path::new(name);
         let path = if given.join("manifest.json").is_file() {
             given.to_owned()
@@ -64,42 +64,65 @@ impl Kept {
     }
 
     /// A part of the checkpoint.
-    pub(super) fn part(&self, name: &str) -> Result<&[u8]> {
+    pub(crate) fn part(&self, name: &str) -> Result<&[u8]> {
         self.checkpoint
             .part(name)
             .with_context(|| format!("checkpoint {} has no {name}", self.path.display()))
     }
 
+    /// The shape of the policy and its weights in that layout, unchecked.
+    pub(crate) fn weights(&self) -> Result<(Shape, Vec<f32>)> {
+        let bytes = self.part("policy.bin")?;
+        let flat = bytes
+            .as_chunks::<4>()
+            .0
+            .iter()
+            .map(|number| f32::from_le_bytes(*number))
+            .collect();
+        Ok((Shape::new(&self.learning.policy.hidden), flat))
+    }
+
+    /// The task that it was trained for.
+    pub(crate) fn task(&self) -> Result<TaskConfig> {
+        Ok(self.config.checked("task", TaskConfig::validate)?)
+    }
+
+    /// The configuration that it was trained under, as a file.
+    pub(crate) fn config_path(&self) -> Result<PathBuf> {
+        config_of(&self.path)
+    }
+
+    /// The name of the run, or of the folder of a shipped policy.
+    pub(crate) fn run_name(&self) -> Result<String> {
+        let config = std::path::absolute(self.config_path()?)?;
+        let folder = config.parent().and_then(Path::file_name);
+        Ok(folder.map_or_else(String::new, |name| name.to_string_lossy().into_owned()))
+    }
+
     /// Where evaluations of it are kept: `evaluation/` in the run's folder, or beside the parts of
     /// a checkpoint that lies in no run.
-    pub(super) fn evaluations(&self) -> PathBuf {
+    pub(crate) fn evaluations(&self) -> PathBuf {
         let home = run_of(&self.path).unwrap_or_else(|| self.path.clone());
         home.join("evaluation")
     }
 }
 
 impl Subject {
-    pub(super) fn open(place: &Place, name: &str) -> Result<Self> {
+    pub(crate) fn open(place: &Place, name: &str) -> Result<Self> {
         let kept = Kept::open(place, name)?;
         let motion: MotionConfig = kept.config.section("motion")?;
         let dataset = Dataset::load(&motion, &kept.path).context("loading the reference motion")?;
         Ok(Self {
-            task: kept.config.checked("task", TaskConfig::validate)?,
+            task: kept.task()?,
             reference: Reference::of(&dataset),
             kept,
         })
     }
 
     /// The policy of the checkpoint, ready to act.
-    pub(super) fn policy(&self) -> Result<Policy> {
-        let bytes = self.kept.part("policy.bin")?;
-        let flat: Vec<f32> = bytes
-            .as_chunks::<4>()
-            .0
-            .iter()
-            .map(|number| f32::from_le_bytes(*number))
-            .collect();
-        let mut policy = Policy::new(Shape::new(&self.kept.learning.policy.hidden));
+    pub(crate) fn policy(&self) -> Result<Policy> {
+        let (shape, flat) = self.kept.weights()?;
+        let mut policy = Policy::new(shape);
         policy
             .load(&flat)
             .with_context(|| format!("loading policy.bin of {}", self.kept.path.display()))?;
@@ -107,7 +130,7 @@ impl Subject {
     }
 
     /// Frames to begin from that go about as `command` asks.
-    pub(super) fn starts(&self, command: [f32; 3]) -> Starts {
+    pub(crate) fn starts(&self, command: [f32; 3]) -> Starts {
         self.reference.starts(command)
     }
 }

@@ -1,0 +1,149 @@
+//! `ampco export`: a trained policy for other programs, and the robot for MuJoCo.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use export::{Description, Network, Origin, network, onnx, tensors};
+use g1::mjcf;
+use sim::RandomizationConfig;
+use sim::world::{CONTROL_STEP, GRAVITY, PHYSICS_STEP};
+
+use crate::evaluate::subject::Kept;
+use crate::failure::usage;
+use crate::place::Place;
+
+/// The robot's file.
+const MODEL: &str = "g1.xml";
+
+/// Take a trained policy out: ONNX, safetensors, a description, and the robot as MJCF
+///
+/// Writes policy.onnx (observation normalisation and deterministic action inside, any batch), policy.safetensors,
+/// policy.json (joints, gains, observation layout, rates, origin) and g1.xml (the robot for MuJoCo).
+#[derive(Debug, clap::Args)]
+pub(crate) struct Export {
+    /// A run's name or folder, a checkpoint's folder, or the folder of a shipped policy
+    #[arg(required_unless_present = "mjcf")]
+    run: Option<String>,
+    #[command(flatten)]
+    place: Place,
+    /// Folder to write to; made if it is not there
+    #[arg(long, value_name = "DIR", required_unless_present = "mjcf")]
+    out: Option<PathBuf>,
+    /// Write the robot alone, to DIR/g1.xml or to standard output
+    #[arg(long, conflicts_with = "run")]
+    mjcf: bool,
+}
+
+impl Export {
+    pub(crate) fn run(&self) -> Result<()> {
+        let mut out = std::io::stdout().lock();
+        let written = match (&self.run, &self.out) {
+            (None, None) => {
+                write!(out, "{}", model())?;
+                return Ok(());
+            }
+            (None, Some(folder)) => write_all(folder, &[(MODEL, model().into_bytes())])?,
+            (Some(run), Some(folder)) => {
+                write_all(folder, &files(&Kept::open(&self.place, run)?)?)?
+            }
+            (Some(_), None) => return Err(usage("--out DIR: say where to write")),
+        };
+        for (path, bytes) in written {
+            writeln!(out, "{:>9} bytes  {}", bytes, path.display())?;
+        }
+        Ok(())
+    }
+}
+
+/// The robot in the simulation's own step, gravity and nominal friction.
+fn model() -> String {
+    let decimal = |x: f32| f64::from((x * 1e6).round()) / 1e6;
+    mjcf::document(&mjcf::Physics {
+        timestep: decimal(PHYSICS_STEP),
+        gravity: decimal(GRAVITY),
+        friction: f64::from(sim::Variation::NOMINAL.friction),
+    })
+}
+
+/// Every file of an export with its bytes; the description, which names the others, comes last.
+fn files(kept: &Kept) -> Result<Vec<(&'static str, Vec<u8>)>> {
+    let place = kept.path.display();
+    let (shape, flat) = kept.weights()?;
+    let network =
+        Network::new(shape, flat).with_context(|| format!("checking policy.bin of {place}"))?;
+    let mut origin = origin(kept, &network)?;
+    let iteration = origin.iteration.to_string();
+    let properties = [
+        ("run", origin.run.as_str()),
+        ("iteration", iteration.as_str()),
+        ("weights_sha256", origin.weights_sha256.as_str()),
+    ];
+    let mut files = vec![
+        (MODEL, model().into_bytes()),
+        ("policy.onnx", onnx::model(&network, &properties)),
+        (
+            "policy.safetensors",
+            tensors::file(&network).context("writing safetensors")?,
+        ),
+    ];
+    origin.files_sha256 = files
+        .iter()
+        .map(|(name, bytes)| ((*name).to_owned(), network::sha256(bytes)))
+        .collect();
+    let rate = |step: f32| f64::from((1.0 / step).round());
+    let description = Description::new(
+        &network,
+        origin,
+        [rate(CONTROL_STEP), rate(PHYSICS_STEP)],
+        serde_json::to_value(&kept.task()?)?,
+        serde_json::to_value(RandomizationConfig::default())?,
+    );
+    let mut text = serde_json::to_vec_pretty(&description)?;
+    text.push(b'\n');
+    files.push(("policy.json", text));
+    Ok(files)
+}
+
+fn origin(kept: &Kept, network: &Network) -> Result<Origin> {
+    let config = kept.config_path()?;
+    let text = std::fs::read(&config).with_context(|| format!("reading {}", config.display()))?;
+    Ok(Origin {
+        run: kept.run_name()?,
+        iteration: kept.iteration,
+        weights_sha256: network.hash(),
+        config_sha256: network::sha256(&text),
+        ..Origin::default()
+    })
+}
+
+/// Writes each file beside, then renames it; gives the paths and sizes.
+fn write_all(folder: &Path, files: &[(&str, Vec<u8>)]) -> Result<Vec<(PathBuf, usize)>> {
+    std::fs::create_dir_all(folder).with_context(|| format!("making {}", folder.display()))?;
+    let mut written = Vec::new();
+    for (name, bytes) in files {
+        let path = folder.join(name);
+        run::replace_file(&path, bytes).with_context(|| format!("writing {}", path.display()))?;
+        written.push((path, bytes.len()));
+    }
+    Ok(written)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_model_steps_as_the_simulation_does() {
+        let text = model();
+        assert!(
+            text.contains(r#"timestep="0.005" gravity="0 0 -9.81""#),
+            "{text}"
+        );
+        let folder = tempfile::tempdir().unwrap();
+        let inner = folder.path().join("a/b");
+        let written = write_all(&inner, &[(MODEL, text.clone().into_bytes())]).unwrap();
+        assert_eq!(written, [(inner.join(MODEL), text.len())]);
+        assert_eq!(std::fs::read_to_string(inner.join(MODEL)).unwrap(), text);
+    }
+}

@@ -1,0 +1,109 @@
+//! `ampco play`: watch a policy or a reference motion.
+//!
+//! What is watched becomes a recording first; a page or a data file is made of that, so nothing here draws.
+
+mod clip;
+mod policy;
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use playback::{Recording, page};
+
+use crate::engine::Engine;
+use crate::evaluate::Command;
+use crate::failure::usage;
+use crate::place::Place;
+
+/// Watch a policy or a reference motion: a page for any browser, or the frames as data
+///
+/// The page is one file that needs no network: orbit with the mouse, scrub, pause. Of a policy it shows one robot that
+/// acts without exploration noise, of a motion file or a built-in gait the reference itself.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Play {
+    /// A run's name or folder, a checkpoint's folder, a motion file, or a built-in gait with its speed in m/s:
+    /// walk:0.8, run:2.2, stand:0
+    what: String,
+    #[command(flatten)]
+    place: Place,
+    /// Write a page that plays it
+    #[arg(long, value_name = "FILE", required_unless_present = "json")]
+    html: Option<PathBuf>,
+    /// Write the frames as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Length; a motion file plays once
+    #[arg(long, value_name = "S", default_value_t = 10.0)]
+    seconds: f64,
+    /// Command to follow: forward and leftward velocity in m/s, yaw rate in rad/s; several follow each other, each for
+    /// an equal share of the time [default: 0.8,0,0]
+    #[arg(long = "command", value_name = "VX,VY,WZ", allow_hyphen_values = true)]
+    commands: Vec<Command>,
+    /// Apply every row of the paper's domain randomisation (Table I)
+    #[arg(long)]
+    randomize: bool,
+    /// Begin in a frame of the reference motion instead of standing
+    #[arg(long)]
+    from_reference: bool,
+    /// Engine that moves the robot, whatever the policy was trained in
+    #[arg(long, value_enum, default_value_t = Engine::Rapier)]
+    physics: Engine,
+    /// Seed of the episode
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Frames per second of a motion file
+    #[arg(long)]
+    fps: Option<f64>,
+}
+
+impl Play {
+    pub(crate) fn run(&self) -> Result<()> {
+        if !(0.02..=600.0).contains(&self.seconds) {
+            return Err(usage(format!(
+                "--seconds {}: give 0.02 to 600",
+                self.seconds
+            )));
+        }
+        let recording = match clip::Source::parse(&self.what) {
+            Some(source) => clip::record(&source, self.fps, self.seconds)?,
+            None => policy::record(self)?,
+        };
+        if let Some(path) = &self.html {
+            write(path, page::html(&recording).as_bytes())?;
+        }
+        if let Some(path) = &self.json {
+            write(path, &serde_json::to_vec(&recording)?)?;
+        }
+        say(&recording)
+    }
+
+    /// The commands in order; each holds for an equal share of the time.
+    fn commands(&self) -> Vec<[f32; 3]> {
+        match self.commands.as_slice() {
+            [] => vec![[0.8, 0.0, 0.0]],
+            given => given.iter().map(|command| command.0).collect(),
+        }
+    }
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+    // A bare file name has the empty path as its folder, which the system does not know.
+    let path = std::path::absolute(path)?;
+    run::replace_file(&path, bytes).with_context(|| format!("writing {}", path.display()))
+}
+
+fn say(recording: &Recording) -> Result<()> {
+    use std::io::Write;
+    let seconds = (recording.frames.len() - 1) as f64 * recording.frame_seconds;
+    let ending = match recording.fell_at {
+        Some(at) => format!(", fell after {at:.2} s"),
+        None => String::new(),
+    };
+    let mut out = std::io::stdout().lock();
+    writeln!(
+        out,
+        "{} · {}: {seconds:.2} s{ending}",
+        recording.title, recording.source
+    )?;
+    Ok(())
+}
