@@ -59,6 +59,7 @@ fn head(physics: &Physics, out: &mut String) -> std::fmt::Result {
     <headlight ambient="0.35 0.35 0.35" diffuse="0.45 0.45 0.45"/>
   </visual>
   <asset>
+    <texture type="skybox" builtin="gradient" rgb1="0.93 0.95 0.96" rgb2="0.72 0.78 0.85" width="64" height="64"/>
     <texture name="grid" type="2d" builtin="checker" width="256" height="256" rgb1="0.86 0.88 0.9" rgb2="0.76 0.79 0.83"/>
     <material name="grid" texture="grid" texrepeat="1 1" texuniform="true"/>
   </asset>
@@ -77,8 +78,7 @@ fn body(index: usize, physics: &Physics, depth: usize, out: &mut String) -> std:
         writeln!(
             out,
             r#"{pad}<body name="{}" pos="0 0 {STANDING_HEIGHT}">
-{pad}  <freejoint name="floating_base"/>
-{pad}  <camera name="side" mode="trackcom" pos="0.6 -2.6 0.3" xyaxes="1 0.25 0 0.02 -0.08 1"/>"#,
+{pad}  <freejoint name="floating_base"/>"#,
             link.name
         )?;
     } else {

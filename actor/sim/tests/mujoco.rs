@@ -1,0 +1,101 @@
+//! The same states and the same flight in MuJoCo, as `deploy/transfer/reference.py` wrote them.
+//!
+//! Contact is left out: two engines' contacts are two models, while what they see of a state and how free bodies and
+//! motors move has one answer.
+
+use g1::{JOINTS, OBSERVATION, RobotState, state};
+use serde_json::Value;
+use sim::{CommandConfig, Fleet, RandomizationConfig, StartConfig, Starts, StepRows, TaskConfig};
+
+const REFERENCE: &str = include_str!("mujoco.json");
+
+fn numbers<const N: usize>(value: &Value) -> [f32; N] {
+    let list = value.as_array().expect("a list");
+    let numbers: Vec<f32> = list.iter().map(|x| x.as_f64().unwrap() as f32).collect();
+    numbers.try_into().expect("as many as asked for")
+}
+
+fn robot_state(value: &Value) -> RobotState {
+    let [w, x, y, z] = numbers(&value["orientation"]);
+    RobotState {
+        position: numbers::<3>(&value["position"]).into(),
+        orientation: state::quaternion(w, x, y, z),
+        linear_velocity: numbers::<3>(&value["linear_velocity"]).into(),
+        angular_velocity: numbers::<3>(&value["angular_velocity"]).into(),
+        joint_positions: numbers(&value["joint_positions"]),
+        joint_velocities: numbers(&value["joint_velocities"]),
+    }
+}
+
+/// One robot in exactly this state, high up, that no rule ends.
+fn placed(start: RobotState, command: [f32; 3]) -> Fleet {
+    let task = TaskConfig {
+        fall_height: 0.0,
+        fall_upright: -1.0,
+        staggered: false,
+        start: StartConfig {
+            reference_share: 1.0,
+            lift: 0.0,
+            position_noise: 0.0,
+            velocity_noise: 0.0,
+        },
+        command: CommandConfig {
+            matched_share: 1.0,
+            ..CommandConfig::default()
+        },
+        ..TaskConfig::default()
+    };
+    let starts: Starts = [(start, command, 1.0)].into_iter().collect();
+    let mut fleet = Fleet::new(&task, &RandomizationConfig::none(), starts, 1, 0).unwrap();
+    fleet.hold_command(0, command);
+    fleet
+}
+
+fn flights() -> Vec<Value> {
+    let reference: Value = serde_json::from_str(REFERENCE).unwrap();
+    assert!((reference["mass"].as_f64().unwrap() - g1::links::total_mass()).abs() < 1e-9);
+    reference["flights"].as_array().unwrap().clone()
+}
+
+#[test]
+fn both_see_the_same_at_the_start() {
+    for flight in flights() {
+        let fleet = placed(robot_state(&flight["state"]), numbers(&flight["command"]));
+        let expected: [f32; OBSERVATION] = numbers(&flight["observation"]);
+        for (i, (ours, theirs)) in fleet.observations().iter().zip(expected).enumerate() {
+            assert!(
+                (ours - theirs).abs() < 1e-4,
+                "number {i}: {ours} and {theirs}"
+            );
+        }
+    }
+}
+
+#[test]
+fn open_loop_joints_stay_together_for_a_fifth_of_a_second_in_the_air() {
+    for flight in flights() {
+        let mut fleet = placed(robot_state(&flight["state"]), numbers(&flight["command"]));
+        let mut rows = StepRows::filled(1, 0.0);
+        let steps = flight["steps"].as_array().unwrap();
+        assert_eq!(steps.len(), 10, "0.2 s at 50 Hz");
+        let (mut work, mut their_work) = (0.0, 0.0);
+        for (i, step) in steps.iter().enumerate() {
+            let targets: [f32; JOINTS] = numbers(&step["targets"]);
+            let action: [f32; JOINTS] =
+                std::array::from_fn(|j| (targets[j] - g1::DEFAULT_POSE[j]) / g1::ACTION_SCALE);
+            fleet.step(&action, &mut rows.out());
+            work += rows.energies[0];
+            their_work += step["work"].as_f64().unwrap() as f32;
+            let expected: [f32; JOINTS] = numbers(&step["joint_positions"]);
+            let ours = fleet.state(0).joint_positions;
+            let squares = ours.iter().zip(expected).map(|(a, b)| (a - b).powi(2));
+            let rms = (squares.sum::<f32>() / JOINTS as f32).sqrt();
+            // The joints swing by 0.3 rad and more meanwhile.
+            assert!(rms < 0.005, "step {i}: {rms} rad apart");
+        }
+        assert!(
+            (work - their_work).abs() < 0.02 * their_work,
+            "{work} J and {their_work} J"
+        );
+    }
+}

@@ -1,0 +1,1 @@
+"""A trained policy in another simulator: reading an export, the robot in MuJoCo, episodes, pictures."""

@@ -1,0 +1,113 @@
+"""Episodes of one command, measured as `ampco evaluate` measures them.
+
+Figures are means over all steps that robots were on their feet, the step of the fall included.
+"""
+
+import numpy as np
+
+from .robot import Robot
+
+
+class Randomization:
+    """Table I: rows of policy.json as draws. Without a table every robot is the nominal one."""
+
+    def __init__(self, table, random):
+        self.table, self.random = table, random
+
+    def _uniform(self, row, size=None):
+        return self.random.uniform(*self.table[row], size=size)
+
+    def variation(self):
+        """Robot and floor of an episode, or nothing."""
+        if self.table is None:
+            return None
+        return {
+            "torso_mass": self._uniform("mass_range"),
+            "torso_com": self._uniform("com_range", 3),
+            "friction": self._uniform("friction_range"),
+        }
+
+    def push_after(self, policy_hz):
+        """Control steps until the next push."""
+        if self.table is None:
+            return np.inf
+        return max(1, round(self._uniform("impulse_seconds") * policy_hz))
+
+    def push(self):
+        """Change of velocity, world frame, m/s."""
+        size = self._uniform("impulse_range", 2) * self.random.choice([-1.0, 1.0], 2)
+        return np.array([*size, 0.0])
+
+    def blur(self, observation, policy):
+        """Sensor noise, drawn anew each step."""
+        if self.table is None:
+            return observation
+        for term, row in (
+            ("linear_velocity", "linear_velocity_range"),
+            ("angular_velocity", "angular_velocity_range"),
+            ("projected_gravity", "gravity_range"),
+            ("joint_position", "joint_position_range"),
+            ("joint_velocity", "joint_velocity_range"),
+        ):
+            place = policy.slice(term)
+            observation[place] += self._uniform(row, place.stop - place.start)
+        return observation
+
+
+def walk(model, policy, command, episodes, seconds, randomize, seed):
+    """The figures of `episodes` robots that follow `command` from standing, as a dict."""
+    random = np.random.default_rng(seed)
+    description = policy.description
+    table = Randomization(description["randomization"] if randomize else None, random)
+    hz = description["control"]["policy_hz"]
+    steps = round(seconds * hz)
+    robots = [Robot(model, policy, table.variation()) for _ in range(episodes)]
+    for robot in robots:
+        robot.perturb(description["task"]["start"], random)
+        robot.command = np.array(command, dtype=np.float64)
+    push_in = [table.push_after(hz) for _ in robots]
+    lived = np.full(episodes, steps)
+    standing = list(range(episodes))
+    count, squared, energy, velocity, yaw_rate = 0, 0.0, 0.0, np.zeros(2), 0.0
+    for step in range(steps):
+        seen = [table.blur(robots[i].observe(), policy) for i in standing]
+        actions = policy.actions(seen)
+        for i, action in zip(list(standing), actions):
+            robot = robots[i]
+            push_in[i] -= 1
+            if push_in[i] == 0:
+                robot.push(table.push())
+                push_in[i] = table.push_after(hz)
+            energy += robot.step(action)
+            planar = robot.velocity_in_heading()
+            squared += ((robot.command[:2] - planar) ** 2).sum()
+            velocity += planar
+            yaw_rate += robot.yaw_rate()
+            count += 1
+            if robot.has_fallen(description["task"]):
+                lived[i] = step + 1
+                standing.remove(i)
+        if not standing:
+            break
+    return figures(command, {
+        "episodes": episodes,
+        "survival": len(standing) / episodes,
+        "rmse": float(np.sqrt(squared / count)),
+        "energy_j": energy / count * 1000,
+        "velocity": (velocity / count).tolist(),
+        "yaw_rate": yaw_rate / count,
+        "seconds_survived": float(lived.mean() / hz),
+    })
+
+
+def figures(command, row):
+    """A row of `walk` or of `ampco evaluate --json` with the two figures that follow from others."""
+    asked = np.array(command[:2], dtype=np.float64)
+    speed = np.linalg.norm(asked)
+    row["command"] = [float(x) for x in command]
+    row["energy_per_step_j"] = row["energy_j"] / 1000
+    # Deviation of the mean velocity from the command, as a share of the command (Section IV-C).
+    row["normalized_error"] = (
+        float(np.linalg.norm(np.array(row["velocity"]) - asked) / speed) if speed > 0 else None
+    )
+    return row

@@ -1,0 +1,68 @@
+"""An exported policy: policy.onnx with the description that says how it is to be used."""
+
+import hashlib
+import json
+from pathlib import Path
+
+import numpy as np
+import onnxruntime
+
+VERSION = 1
+
+
+class ExportError(Exception):
+    """An export that cannot be used; the message names the file and the remedy."""
+
+
+class Policy:
+    """Actions `[n, 23]` of observations `[n, 82]`, and everything in policy.json as `description`."""
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+        path = self.folder / "policy.json"
+        try:
+            self.description = json.loads(path.read_text())
+        except FileNotFoundError:
+            raise ExportError(f"{path} is not there: write it with `ampco export RUN --out {folder}`") from None
+        except ValueError as problem:
+            raise ExportError(f"{path} is no JSON ({problem}): export the run again") from None
+        if self.description.get("format") != "ampco policy" or self.description.get("version", 0) > VERSION:
+            raise ExportError(f"{path} is of another format or a newer version: use the script that came with it")
+        for name, expected in self.description["origin"]["files_sha256"].items():
+            found = hashlib.sha256((self.folder / name).read_bytes()).hexdigest()
+            if found != expected:
+                raise ExportError(f"{self.folder / name} is not the file that was exported: export the run again")
+        options = onnxruntime.SessionOptions()
+        # Small products: more threads only wait for each other.
+        options.intra_op_num_threads = 1
+        self._session = onnxruntime.InferenceSession(
+            str(self.folder / "policy.onnx"), options, providers=["CPUExecutionProvider"]
+        )
+        self._network = self.description["network"]
+        self.check()
+
+    def actions(self, observations):
+        """Deterministic actions, float32."""
+        inputs = {self._network["input"]: np.asarray(observations, dtype=np.float32)}
+        return self._session.run([self._network["output"]], inputs)[0]
+
+    def check(self):
+        """Compares this runtime with the one that exported, on the example in the description."""
+        example = self.description["example"]
+        error = np.abs(self.actions([example["observation"]])[0] - np.float32(example["action"])).max()
+        if not error < 1e-5:
+            raise ExportError(f"{self.folder}/policy.onnx gives another action than its example, by {error:.2e}")
+
+    def joint(self, field):
+        """One number per joint, in the one joint order."""
+        return np.array([joint[field] for joint in self.description["joints"]], dtype=np.float64)
+
+    def slice(self, name):
+        """Where a term of the observation is."""
+        term = next(term for term in self.description["observation"] if term["name"] == name)
+        return slice(term["start"], term["start"] + term["length"])
+
+    def title(self):
+        """Run and iteration."""
+        origin = self.description["origin"]
+        return f"{origin['run']}, iteration {origin['iteration']}"
