@@ -12,3 +12,4 @@ mod licences;
 mod pair;
 mod repeat;
 mod schedule;
+mod watch;

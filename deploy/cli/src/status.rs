@@ -1,5 +1,9 @@
 //! `ampco status`: how a run is going, from its folder alone.
 
+mod board;
+mod draw;
+mod watch;
+
 use std::io::Write;
 
 use anyhow::{Context, Result};
@@ -20,11 +24,17 @@ pub(crate) struct Status {
     /// Print one JSON object instead
     #[arg(long)]
     json: bool,
+    /// Stay and draw the run as it goes, until q
+    #[arg(long, conflicts_with = "json")]
+    watch: bool,
 }
 
 impl Status {
     pub(crate) fn run(&self) -> Result<()> {
         let folder = self.place.find(self.run.as_deref())?;
+        if self.watch {
+            return watch::run(folder);
+        }
         let status = status(&folder)?;
         let mut text = if self.json {
             status.to_string()

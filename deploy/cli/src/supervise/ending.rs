@@ -3,8 +3,9 @@
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
+use protocol::DomainError;
 use rustix::process::Signal;
-use tokio::time::interval;
+use tokio::time::{interval, sleep};
 
 use super::stop::Stop;
 use super::{Group, LEARNER, LOOK, Reason, is_actor};
@@ -49,13 +50,25 @@ impl Group<'_> {
         self.glance()?;
         self.show(Instant::now());
         self.console.finish();
-        self.domain
-            .remove()
-            .context("removing the run's shared memory")?;
+        self.remove_memory().await?;
         self.report(&reason, &killed);
         match reason {
             Reason::Failed(error) => Err(error),
             _ => Ok(()),
+        }
+    }
+
+    /// Removes the run's shared memory. One who only watches leaves when it sees the end, which takes it a moment.
+    async fn remove_memory(&self) -> Result<()> {
+        let until = Instant::now() + GRACE;
+        loop {
+            match self.domain.remove() {
+                Err(DomainError::InUse { .. }) if Instant::now() < until => sleep(LOOK).await,
+                removed => {
+                    removed.context("removing the run's shared memory")?;
+                    return Ok(());
+                }
+            }
         }
     }
 
