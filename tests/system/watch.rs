@@ -25,7 +25,11 @@ fn a_watcher_sees_every_report_and_the_group_ends_well_around_it() {
         let arrival = rewards.receive().expect("readable")?;
         (arrival.report.iteration >= first.report.iteration + 3).then_some(arrival)
     });
-    assert_eq!(rewards.missed(), before, "no report is lost on a watcher that keeps up");
+    assert_eq!(
+        rewards.missed(),
+        before,
+        "no report is lost on a watcher that keeps up"
+    );
     let line = until_iteration(&run, last.report.iteration);
     let logged = metrics(&run)
         .into_iter()
@@ -35,13 +39,23 @@ fn a_watcher_sees_every_report_and_the_group_ends_well_around_it() {
         Some(last.report.style_mean)
     );
     assert_eq!(line["dropped"], 0);
-    assert!(directives.newest().expect("readable").is_some(), "the newest is kept for late readers");
-    let version = until("weights", || weights.newest().expect("readable").map(|w| w.header().version));
+    assert!(
+        directives.newest().expect("readable").is_some(),
+        "the newest is kept for late readers"
+    );
+    let version = until("weights", || {
+        weights
+            .newest()
+            .expect("readable")
+            .map(|w| w.header().version)
+    });
     assert!(version >= 2);
 
     // A watcher that notices the end late: the group waits for it, and then ends as always.
     group.signal(Signal::TERM);
-    until("the end of the scheduler", || holder(&run, "scheduler").is_none().then_some(()));
+    until("the end of the scheduler", || {
+        holder(&run, "scheduler").is_none().then_some(())
+    });
     let slow = Instant::now() + Duration::from_millis(500);
     until("a slow watcher", || (Instant::now() >= slow).then_some(()));
     drop((rewards, directives, weights, node));

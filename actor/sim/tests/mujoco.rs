@@ -5,7 +5,11 @@
 
 use g1::{JOINTS, OBSERVATION, RobotState, state};
 use serde_json::Value;
-use sim::{CommandConfig, Fleet, RandomizationConfig, StartConfig, Starts, StepRows, TaskConfig};
+use sim::{
+    CommandConfig, Fleet, Physics, RandomizationConfig, StartConfig, Starts, StepRows, TaskConfig,
+};
+
+const ENGINES: [Physics; 2] = [Physics::Rapier, Physics::Batched];
 
 const REFERENCE: &str = include_str!("mujoco.json");
 
@@ -28,8 +32,11 @@ fn robot_state(value: &Value) -> RobotState {
 }
 
 /// One robot in exactly this state, high up, that no rule ends.
-fn placed(start: RobotState, command: [f32; 3]) -> Fleet {
+fn placed(physics: Physics, flight: &Value) -> Fleet {
+    let start = robot_state(&flight["state"]);
+    let command = numbers(&flight["command"]);
     let task = TaskConfig {
+        physics,
         fall_height: 0.0,
         fall_upright: -1.0,
         staggered: false,
@@ -51,21 +58,25 @@ fn placed(start: RobotState, command: [f32; 3]) -> Fleet {
     fleet
 }
 
-fn flights() -> Vec<Value> {
+fn flights() -> Vec<(Physics, Value)> {
     let reference: Value = serde_json::from_str(REFERENCE).unwrap();
     assert!((reference["mass"].as_f64().unwrap() - g1::links::total_mass()).abs() < 1e-9);
-    reference["flights"].as_array().unwrap().clone()
+    let flights = reference["flights"].as_array().unwrap();
+    ENGINES
+        .iter()
+        .flat_map(|engine| flights.iter().map(|flight| (*engine, flight.clone())))
+        .collect()
 }
 
 #[test]
 fn both_see_the_same_at_the_start() {
-    for flight in flights() {
-        let fleet = placed(robot_state(&flight["state"]), numbers(&flight["command"]));
+    for (engine, flight) in flights() {
+        let fleet = placed(engine, &flight);
         let expected: [f32; OBSERVATION] = numbers(&flight["observation"]);
         for (i, (ours, theirs)) in fleet.observations().iter().zip(expected).enumerate() {
             assert!(
                 (ours - theirs).abs() < 1e-4,
-                "number {i}: {ours} and {theirs}"
+                "{engine:?}, number {i}: {ours} and {theirs}"
             );
         }
     }
@@ -73,8 +84,8 @@ fn both_see_the_same_at_the_start() {
 
 #[test]
 fn open_loop_joints_stay_together_for_a_fifth_of_a_second_in_the_air() {
-    for flight in flights() {
-        let mut fleet = placed(robot_state(&flight["state"]), numbers(&flight["command"]));
+    for (engine, flight) in flights() {
+        let mut fleet = placed(engine, &flight);
         let mut rows = StepRows::filled(1, 0.0);
         let steps = flight["steps"].as_array().unwrap();
         assert_eq!(steps.len(), 10, "0.2 s at 50 Hz");
@@ -91,11 +102,11 @@ fn open_loop_joints_stay_together_for_a_fifth_of_a_second_in_the_air() {
             let squares = ours.iter().zip(expected).map(|(a, b)| (a - b).powi(2));
             let rms = (squares.sum::<f32>() / JOINTS as f32).sqrt();
             // The joints swing by 0.3 rad and more meanwhile.
-            assert!(rms < 0.005, "step {i}: {rms} rad apart");
+            assert!(rms < 0.005, "{engine:?}, step {i}: {rms} rad apart");
         }
         assert!(
             (work - their_work).abs() < 0.02 * their_work,
-            "{work} J and {their_work} J"
+            "{engine:?}: {work} J and {their_work} J"
         );
     }
 }

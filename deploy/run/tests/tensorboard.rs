@@ -35,15 +35,28 @@ fn tensorboard_shows_what_was_written_and_forgets_what_a_resume_repeats() {
     let line = |iteration: u64, length: f64| json!({ "iteration": iteration, "episode_length": length, "phase": 1 });
     let mut first = Events::create(folder.path(), 0, 1_700_000_000.0).unwrap();
     for (iteration, length) in [(1, 20.0), (2, 30.0), (3, 40.0)] {
-        first.append(&line(iteration, length), 1_700_000_000.0 + iteration as f64).unwrap();
+        first
+            .append(&line(iteration, length), 1_700_000_000.0 + iteration as f64)
+            .unwrap();
     }
     // A resume from iteration 2 tells iteration 3 again.
     let mut second = Events::create(folder.path(), 2, 1_700_000_100.0).unwrap();
     second.append(&line(3, 45.0), 1_700_000_101.0).unwrap();
 
-    let output = Command::new(python).args(["-c", READ]).arg(folder.path()).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let output = Command::new(python)
+        .args(["-c", READ])
+        .arg(folder.path())
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     let read: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(read["Train/mean_episode_length"], json!([[1, 20.0], [2, 30.0], [3, 45.0]]));
+    assert_eq!(
+        read["Train/mean_episode_length"],
+        json!([[1, 20.0], [2, 30.0], [3, 45.0]])
+    );
     assert_eq!(read["AMPCO/phase"], json!([[1, 1.0], [2, 1.0], [3, 1.0]]));
 }

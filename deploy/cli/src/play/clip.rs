@@ -53,9 +53,9 @@ pub(super) fn record(source: &Source, fps: Option<f64>, seconds: f64) -> Result<
     let config = MotionConfig {
         clips: vec![source.config(fps)],
         mirror: false,
+        ..MotionConfig::default()
     };
-    let dataset = Dataset::load(&config, Path::new(""))
-        .context("loading the motion (--fps gives a file's frames per second)")?;
+    let dataset = Dataset::load(&config, Path::new("")).context("loading the motion")?;
     let clip = dataset.clips().first().expect("one clip was asked for");
     Ok(Recording {
         title: clip.name.clone(),
