@@ -11,7 +11,7 @@ mod reach;
 mod relax;
 
 use crate::block::{Block, row};
-use crate::factor::Factor;
+use crate::factor::{self, Factor};
 use crate::ground::Ground;
 use crate::kinematics::Walk;
 use crate::lane::Lane;
@@ -206,6 +206,32 @@ impl<L: Lane> Contacts<L> {
     }
 }
 
+/// Velocity per impulse at every point of the robot that stands, mean of the three directions, 1/kg:
+/// what softness is a share of, so that it does not depend on the step or on the pose.
+pub(crate) fn weights(tree: &Tree<f64>) -> [f64; POINTS] {
+    let mut walk = Walk::new(());
+    walk.run((), tree, &Block::new(), 0);
+    let mut root = [0.0; DEGREES];
+    factor::factor(&mut walk.trunk, &mut walk.limbs, &mut root);
+    let factor = Factor {
+        trunk: &walk.trunk,
+        limbs: &walk.limbs,
+        root: &root,
+    };
+    let mut reach = Reach::new(0.0);
+    std::array::from_fn(|point| {
+        let (limb, moved) = POINT_TABLE[point].chain();
+        if limb < 2 {
+            reach.fill::<BASE, 6>(limb, moved, &walk, factor, 0.0);
+        } else {
+            reach.fill::<TRUNK, 5>(limb, moved, &walk, factor, 0.0);
+        }
+        let mut y = [[0.0; CHAIN]; 3];
+        reach.at(walk.points[point], None, &mut y);
+        y.iter().flatten().map(|y| y * y).sum::<f64>() / 3.0
+    })
+}
+
 impl<L: Lane> Contact<L> {
     /// What the contact wants and how it yields; `now` is the point's velocity along its axes.
     #[inline(always)]
@@ -228,8 +254,10 @@ impl<L: Lane> Contact<L> {
         // Stiffness and damping of MuJoCo's reference, with a damping ratio of 1.
         let b = touch.dt * distance.lit(2.0 / (IMPEDANCE[1] * TIME_CONSTANT));
         let k = touch.dt * distance.lit(1.0 / (IMPEDANCE[1] * TIME_CONSTANT).powi(2));
-        let wanted = k.neg_mul_add(distance, now[0]) / k.mul_add(touch.dt, b + one);
-        self.soft = normal * (one - impedance) / impedance;
+        let share = one / k.mul_add(touch.dt, b + one);
+        let wanted = k.neg_mul_add(distance, now[0]) * share;
+        let weight = L::splat(touch.token, touch.tree.weights[self.point]);
+        self.soft = weight * share * (one - impedance) / impedance;
         self.step = (one / (normal + self.soft)).select(touching, zero);
         self.missing = [now[0] - wanted, now[1], now[2]];
         let inverse = one / mixed.neg_mul_add(mixed, first * second);

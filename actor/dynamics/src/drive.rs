@@ -44,14 +44,22 @@ pub(crate) struct Torque<L> {
 impl<L: Lane> Torque<L> {
     /// Of the motor law for a joint at `q` with speed `speed`.
     #[inline(always)]
-    pub(crate) fn of_motor(stiffness: L, damping: L, effort: L, target: L, q: L, speed: L) -> Self {
+    pub(crate) fn of_motor(
+        stiffness: L,
+        damping: L,
+        effort: L,
+        target: L,
+        q: L,
+        speed: L,
+        half: L,
+    ) -> Self {
         let pull = stiffness * (target - q);
         let asked = damping.neg_mul_add(speed, pull);
         let beyond = effort.less(asked.abs());
         let zero = asked.lit(0.0);
         Self {
             constant: asked.max(-effort).min(effort).select(beyond, pull),
-            damping: zero.select(beyond, damping),
+            damping: zero.select(beyond, stiffness.mul_add(half, damping)),
         }
     }
 
@@ -83,13 +91,13 @@ mod tests {
     #[test]
     fn torque_is_stiffness_times_error_less_damping_times_speed() {
         // Knee: 150·0.1 = 15 N·m, less 4·0.5 after the step.
-        let knee = Torque::of_motor(150.0_f64, 4.0, 139.0, 0.4, 0.3, 0.0);
+        let knee = Torque::of_motor(150.0_f64, 4.0, 139.0, 0.4, 0.3, 0.0, 0.0);
         assert!((knee.at(0.0) - 15.0).abs() < 1e-12);
         assert!((knee.at(0.5) - 13.0).abs() < 1e-12);
         // Elbow: 40·2 = 80 N·m asked, 25 given, whatever the speed after the step.
-        let elbow = Torque::of_motor(40.0_f64, 1.0, 25.0, 2.0, 0.0, 0.0);
+        let elbow = Torque::of_motor(40.0_f64, 1.0, 25.0, 2.0, 0.0, 0.0, 0.0025);
         assert_eq!((elbow.at(0.0), elbow.at(9.0)), (25.0, 25.0));
-        let back = Torque::of_motor(40.0_f64, 1.0, 25.0, -2.0, 0.0, 0.0);
+        let back = Torque::of_motor(40.0_f64, 1.0, 25.0, -2.0, 0.0, 0.0, 0.0025);
         assert_eq!(back.at(1.0), -25.0);
     }
 

@@ -82,7 +82,7 @@ pub(crate) fn step<L: Lane>(
     for i in 0..BASE {
         x[i] = -(dt * walk.bias[i]);
     }
-    let zero = dt.lit(0.0);
+    let (zero, half) = (dt.lit(0.0), dt * dt.lit(0.5));
     let mut torques = [Torque {
         constant: zero,
         damping: zero,
@@ -98,6 +98,7 @@ pub(crate) fn step<L: Lane>(
             targets[joint].get(token, lane),
             q,
             speed,
+            half,
         );
         torques[joint] = torque;
         let diagonal = diagonal(walk, joint);

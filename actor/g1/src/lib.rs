@@ -12,6 +12,7 @@
 //! | a state of the robot and its frames | [`state`] |
 //! | what the policy and the discriminator see | [`observation`] |
 //! | left–right reflection | [`mirror`] |
+//! | the robot for MuJoCo | [`mjcf`] |
 //! | forward kinematics, Jacobian, foot and mass points | [`kinematics`] |
 #![forbid(unsafe_code)]
 
@@ -20,6 +21,7 @@ pub mod joints;
 pub mod kinematics;
 pub mod links;
 pub mod mirror;
+pub mod mjcf;
 pub mod observation;
 pub mod state;
 
