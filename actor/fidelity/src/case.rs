@@ -87,7 +87,7 @@ pub struct Case {
     pub pull: [f32; 3],
     /// Steps of [`STEP`] before that acceleration begins.
     pub pull_from: usize,
-    /// Whether it shows in a comparison with the engine's own run at a tenth of the step.
+    /// Whether every engine is compared with its own run at a tenth of the step.
     pub refined: bool,
 }
 

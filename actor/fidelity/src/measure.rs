@@ -88,7 +88,10 @@ pub fn rows(traces: &Traces) -> Vec<Row> {
         let pair = traces.coarse(name).zip(traces.fine(name));
         let height = pair.map(|(a, b)| 1e3 * rms(a, b, |frame| frame.position[2]));
         error(format!("{name}: height"), "mm", height);
-        for (joint, part) in [(joints::LEFT_LEG + 3, "knee"), (joints::LEFT_LEG + 4, "ankle")] {
+        for (joint, part) in [
+            (joints::LEFT_LEG + 3, "knee"),
+            (joints::LEFT_LEG + 4, "ankle"),
+        ] {
             let value = pair.map(|(a, b)| rms(a, b, |frame| frame.joints[joint]));
             error(format!("{name}: {part}"), "rad", value);
         }
@@ -96,36 +99,49 @@ pub fn rows(traces: &Traces) -> Vec<Row> {
     let stand = traces.coarse("stand");
     let pair = stand.zip(traces.fine("stand"));
     let sunk = pair.and_then(|(a, b)| Some(height(a)? - height(b)?));
-    error("stand: height after 10 s".into(), "mm", sunk.map(|x| 1e3 * x.abs()));
+    error(
+        "stand: height after 10 s".into(),
+        "mm",
+        sunk.map(|x| 1e3 * x.abs()),
+    );
     let weight = links::total_mass() * f64::from(sim::world::GRAVITY);
     let force = stand.map(mean_force);
     let excess = force.map(|force| (force - weight).abs());
     error("stand: force on the soles less weight".into(), "N", excess);
     let drift = stand.and_then(|trace| moved(trace, SETTLING));
     error("stand: feet moved from 1 to 10 s".into(), "mm", drift);
-    let creep = traces.coarse("creep").and_then(|trace| moved(trace, SETTLING));
+    let creep = traces
+        .coarse("creep")
+        .and_then(|trace| moved(trace, SETTLING));
     error("creep: feet moved in 3 s".into(), "mm", creep);
     for ((joint, upper), case) in STOPS.into_iter().zip(cases::all().into_iter().skip(6)) {
         let beyond = traces.coarse(&case.name).map(|trace| {
             let limits = &JOINT_TABLE[joint];
             let gap = |frame: &Frame| {
                 let q = f64::from(frame.joints[joint]);
-                if upper { q - limits.upper } else { limits.lower - q }
+                if upper {
+                    q - limits.upper
+                } else {
+                    limits.lower - q
+                }
             };
             trace.frames.iter().map(gap).fold(0.0, f64::max)
         });
         error(format!("{}: beyond it", case.name), "rad", beyond);
     }
-    let robots = traces.stress.len();
-    let unsound = traces.stress.iter().filter(|trace| !trace.sound).count();
-    let unsound = (robots > 0).then_some(unsound as f64);
-    error(format!("stress: of {robots} robots unsound"), "robots", unsound);
+    let robots = traces.stress.len() as f64;
+    let unsound = traces.stress.iter().filter(|trace| !trace.sound).count() as f64;
+    let share = (robots > 0.0).then_some(100.0 * unsound / robots);
+    error("stress: robots with broken numbers".into(), "%", share);
     let peak = |trace: &Trace| {
         let peaks = trace.frames.iter().map(|frame| f64::from(frame.peak));
         peaks.fold(0.0, f64::max)
     };
     for (name, value) in [
-        ("drop: peak force on the soles", traces.coarse("drop").map(peak)),
+        (
+            "drop: peak force on the soles",
+            traces.coarse("drop").map(peak),
+        ),
         ("the same at 0.5 ms", traces.fine("drop").map(peak)),
         ("stand: force on the soles", force),
     ] {
@@ -166,7 +182,10 @@ fn rms(a: &Trace, b: &Trace, number: impl Fn(&Frame) -> f32) -> f64 {
 }
 
 fn height(trace: &Trace) -> Option<f64> {
-    trace.frames.last().map(|frame| f64::from(frame.position[2]))
+    trace
+        .frames
+        .last()
+        .map(|frame| f64::from(frame.position[2]))
 }
 
 /// Over the second half, N.
@@ -177,7 +196,10 @@ fn mean_force(trace: &Trace) -> f64 {
 
 /// How far the feet moved after a time, mm.
 fn moved(trace: &Trace, after: f64) -> Option<f64> {
-    let from = trace.frames.get((after / STEP).round() as usize - 1)?.feet();
+    let from = trace
+        .frames
+        .get((after / STEP).round() as usize - 1)?
+        .feet();
     let to = trace.frames.last()?.feet();
     Some(1e3 * f64::from((to[0] - from[0]).hypot(to[1] - from[1])))
 }
