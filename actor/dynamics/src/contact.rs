@@ -11,7 +11,7 @@ mod reach;
 mod relax;
 
 use crate::block::{Block, row};
-use crate::factor::Factor;
+use crate::factor::{self, Factor};
 use crate::ground::Ground;
 use crate::kinematics::Walk;
 use crate::lane::Lane;
@@ -121,6 +121,7 @@ impl<L: Lane> Contacts<L> {
         let place =
             |axis: usize| -> L { block.state[row::POSITION + axis].get(touch.token, touch.lane) };
         let root = Vec3::new(place(0), place(1), place(2));
+        let base = Vec3::new(velocity[0], velocity[1], velocity[2]);
         let zero = touch.dt.lit(0.0);
         let mut count = first;
         let mut reached = usize::MAX;
@@ -135,10 +136,21 @@ impl<L: Lane> Contacts<L> {
                 None => root.z + at.z,
                 Some(below) => below.distance,
             };
-            if !zero.any(distance.less(zero)) {
+            let body = POINT_TABLE[point].body;
+            let spin = walk.velocities[body];
+            let falling = match &below {
+                None => {
+                    let turning = spin.turn.x.mul_add(at.y, spin.shift.z + velocity[2]);
+                    spin.turn.y.neg_mul_add(at.x, turning)
+                }
+                Some(below) => below.frame[0].dot(spin.turn.cross_add(at, spin.shift.add(base))),
+            };
+            // What reaches the ground within the step touches it already.
+            let nearest = falling.min(zero).mul_add(touch.dt, distance);
+            let touching = nearest.less(zero);
+            if !zero.any(touching) {
                 continue;
             }
-            let body = POINT_TABLE[point].body;
             if reached != body {
                 reached = body;
                 let moved = POINT_TABLE[point].chain().1;
@@ -148,8 +160,6 @@ impl<L: Lane> Contacts<L> {
             let contact = &mut self.list[count];
             count += 1;
             contact.point = point;
-            let base = Vec3::new(velocity[0], velocity[1], velocity[2]);
-            let spin = walk.velocities[body];
             let mut now = spin.turn.cross_add(at, spin.shift.add(base));
             let mut frame = None;
             if let Some(below) = below {
@@ -158,7 +168,7 @@ impl<L: Lane> Contacts<L> {
                 frame = Some(below.frame);
             }
             self.reach.at(at, frame, &mut contact.y);
-            contact.meet(touch, block, distance, [now.z, now.x, now.y]);
+            contact.meet(touch, block, touching, distance, [now.z, now.x, now.y]);
         }
         count
     }
@@ -206,12 +216,44 @@ impl<L: Lane> Contacts<L> {
     }
 }
 
+/// Velocity per impulse at every point of the robot that stands, mean of the three directions, 1/kg:
+/// what softness is a share of, so that it does not depend on the step or on the pose.
+pub(crate) fn weights(tree: &Tree<f64>) -> [f64; POINTS] {
+    let mut walk = Walk::new(());
+    walk.run((), tree, &Block::new(), 0);
+    let mut root = [0.0; DEGREES];
+    factor::factor(&mut walk.trunk, &mut walk.limbs, &mut root);
+    let factor = Factor {
+        trunk: &walk.trunk,
+        limbs: &walk.limbs,
+        root: &root,
+    };
+    let mut reach = Reach::new(0.0);
+    std::array::from_fn(|point| {
+        let (limb, moved) = POINT_TABLE[point].chain();
+        if limb < 2 {
+            reach.fill::<BASE, 6>(limb, moved, &walk, factor, 0.0);
+        } else {
+            reach.fill::<TRUNK, 5>(limb, moved, &walk, factor, 0.0);
+        }
+        let mut y = [[0.0; CHAIN]; 3];
+        reach.at(walk.points[point], None, &mut y);
+        y.iter().flatten().map(|y| y * y).sum::<f64>() / 3.0
+    })
+}
+
 impl<L: Lane> Contact<L> {
     /// What the contact wants and how it yields; `now` is the point's velocity along its axes.
     #[inline(always)]
-    fn meet(&mut self, touch: &Touch<'_, L>, block: &Block<L::Scalar>, distance: L, now: [L; 3]) {
+    fn meet(
+        &mut self,
+        touch: &Touch<'_, L>,
+        block: &Block<L::Scalar>,
+        touching: L::Mask,
+        distance: L,
+        now: [L; 3],
+    ) {
         let (zero, one) = (touch.dt.lit(0.0), touch.dt.lit(1.0));
-        let touching = distance.less(zero);
         let y = &self.y;
         let (mut normal, mut first, mut mixed, mut second) = (zero, zero, zero, zero);
         for i in 0..CHAIN {
@@ -228,8 +270,13 @@ impl<L: Lane> Contact<L> {
         // Stiffness and damping of MuJoCo's reference, with a damping ratio of 1.
         let b = touch.dt * distance.lit(2.0 / (IMPEDANCE[1] * TIME_CONSTANT));
         let k = touch.dt * distance.lit(1.0 / (IMPEDANCE[1] * TIME_CONSTANT).powi(2));
-        let wanted = k.neg_mul_add(distance, now[0]) / k.mul_add(touch.dt, b + one);
-        self.soft = normal * (one - impedance) / impedance;
+        let share = one / k.mul_add(touch.dt, b + one);
+        // Above the ground the way down is free; only the velocity beyond that is braked.
+        let rate = (k + distance.lit(1.0 / (IMPEDANCE[1] * TIME_CONSTANT)) * distance.lit(2.0))
+            .select(zero.less(distance), k);
+        let wanted = rate.neg_mul_add(distance, now[0]) * share;
+        let weight = L::splat(touch.token, touch.tree.weights[self.point]);
+        self.soft = weight * share * (one - impedance) / impedance;
         self.step = (one / (normal + self.soft)).select(touching, zero);
         self.missing = [now[0] - wanted, now[1], now[2]];
         let inverse = one / mixed.neg_mul_add(mixed, first * second);

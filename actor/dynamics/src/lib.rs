@@ -12,6 +12,7 @@
 //! | the ground | [`ground`] |
 //! | the tree, contact points | [`tree`] |
 //! | rows of sixteen numbers | [`block`] |
+//! | one robot in double precision, and its equations of motion | [`reference`] |
 //! | one step | `step` |
 //! | bias forces and the mass matrix | `kinematics` |
 //! | LᵀDL along the tree | `factor` |
@@ -33,6 +34,7 @@ mod factor;
 pub mod ground;
 mod kinematics;
 pub mod lane;
+pub mod reference;
 pub mod robots;
 mod spatial;
 mod step;
@@ -41,4 +43,5 @@ pub mod tree;
 pub use block::Build;
 pub use drive::Motors;
 pub use ground::{Ground, Heights};
-pub use robots::{Effort, Peaks, Reference, Robots, Saved, Solver};
+pub use reference::Reference;
+pub use robots::{Effort, Peaks, Robots, Saved, Solver};

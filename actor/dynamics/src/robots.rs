@@ -5,7 +5,7 @@
 use crate::block::{Block, Build, LANES, Row, row};
 use crate::drive::Motors;
 use crate::ground::Ground;
-use crate::lane::{Packed, Real};
+use crate::lane::Packed;
 use crate::step::{Room, Setting, Tally, step};
 use crate::tree::Tree;
 use g1::{JOINTS, RobotState};
@@ -241,71 +241,6 @@ impl WithSimd for Advance<'_> {
                     step::<Packed<S>>(simd, &self.setting, targets, lane, block, tally, &mut room);
                 }
             }
-        }
-    }
-}
-
-/// One robot in double precision and with any step: what the others are compared with.
-pub struct Reference {
-    tree: Tree<f64>,
-    ground: Ground,
-    motors: Motors<f64>,
-    sweeps: usize,
-    block: Block<f64>,
-    targets: [Row<f64>; JOINTS],
-}
-
-impl Reference {
-    /// With a solver's motors and ground.
-    pub fn new(solver: &Solver, sweeps: usize) -> Self {
-        Self {
-            tree: Tree::new(),
-            ground: solver.ground.clone(),
-            motors: solver.motors.cast(),
-            sweeps,
-            block: Block::new(),
-            targets: [Row::default(); JOINTS],
-        }
-    }
-
-    /// Puts the robot into a state.
-    pub fn set_state(&mut self, state: &RobotState) {
-        self.block.set_state(0, state);
-    }
-
-    /// The robot's state.
-    pub fn state(&self) -> RobotState {
-        self.block.state(0)
-    }
-
-    /// Target positions of its joints, rad.
-    pub fn set_targets(&mut self, targets: &[f32; JOINTS]) {
-        for (row, target) in self.targets.iter_mut().zip(targets) {
-            row.0[0] = f64::of(f64::from(*target));
-        }
-    }
-
-    /// Advances by steps of `dt` seconds.
-    pub fn advance(&mut self, steps: usize, dt: f64) {
-        let setting = Setting {
-            tree: &self.tree,
-            ground: &self.ground,
-            motors: &self.motors,
-            dt,
-            sweeps: self.sweeps,
-        };
-        let mut room = Room::<f64>::new(());
-        let mut tally = Tally::default();
-        for _ in 0..steps {
-            step::<f64>(
-                (),
-                &setting,
-                &self.targets,
-                0,
-                &mut self.block,
-                &mut tally,
-                &mut room,
-            );
         }
     }
 }

@@ -5,7 +5,7 @@
 
 use crate::block::{Block, Row, row};
 use crate::contact::{Contacts, Touch};
-use crate::drive::{Motors, Torque, stop};
+use crate::drive::{AHEAD, Motors, Torque, stop};
 use crate::factor::{self, Factor};
 use crate::ground::Ground;
 use crate::kinematics::Walk;
@@ -86,7 +86,7 @@ pub(crate) fn step<L: Lane>(
     for i in 0..BASE {
         x[i] = -(dt * walk.bias[i]);
     }
-    let zero = dt.lit(0.0);
+    let (zero, ahead) = (dt.lit(0.0), dt * dt.lit(AHEAD));
     let mut torques = [Torque {
         constant: zero,
         damping: zero,
@@ -102,6 +102,7 @@ pub(crate) fn step<L: Lane>(
             targets[joint].get(token, lane),
             q,
             speed,
+            ahead,
         );
         torques[joint] = torque;
         let diagonal = diagonal(walk, joint);

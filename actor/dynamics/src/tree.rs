@@ -5,6 +5,7 @@
 //! (3, world frame) and 23 joint speeds: 29 numbers. Seen from its end every limb hangs on a chain of
 //! twelve: a leg on the base's 6 and its own 6, an arm on the base's 6, the waist and its own 5.
 
+use crate::contact;
 use crate::lane::Real;
 use g1::{BODIES, JOINT_TABLE, JOINTS, LEFT_FOOT, LINK_TABLE, RIGHT_FOOT, joints, links};
 use nalgebra::Rotation3;
@@ -138,10 +139,21 @@ pub(crate) struct Tree<T> {
     pub(crate) of_limb: [(usize, usize); LIMBS],
     /// Points by limb, then by body.
     pub(crate) order: [usize; POINTS],
+    /// Velocity per impulse of the points, 1/kg.
+    pub(crate) weights: [T; POINTS],
 }
 
 impl<T: Real> Tree<T> {
     pub(crate) fn new() -> Self {
+        let weights = contact::weights(&Tree::<f64>::weightless());
+        Self {
+            weights: weights.map(T::of),
+            ..Self::weightless()
+        }
+    }
+
+    /// All but the points' weights, which take a solver to find.
+    fn weightless() -> Self {
         let hinges = std::array::from_fn(|i| {
             let joint = &JOINT_TABLE[i];
             let [roll, pitch, yaw] = joint.rpy;
@@ -184,6 +196,7 @@ impl<T: Real> Tree<T> {
             of_body,
             of_limb,
             order,
+            weights: [T::default(); POINTS],
         }
     }
 }

@@ -3,6 +3,7 @@
 //! Each benchmark is a file of its own that returns one JSON object; this file prints it as the
 //! last line of standard output, so that scripts read that line and people read what is above.
 
+mod fidelity;
 mod ipc;
 mod learner;
 mod scheduler;
@@ -25,6 +26,8 @@ pub(crate) struct Bench {
 enum Part {
     /// Physics and inference: control steps per second and core
     Sim(sim::SimBench),
+    /// Physics: errors of the engines against converged solutions
+    Fidelity(fidelity::FidelityBench),
     /// Learning: milliseconds per step, samples per second of a whole iteration
     Learner(learner::LearnerBench),
     /// Messages: wake-up time, throughput, time until new weights are adopted
@@ -37,6 +40,7 @@ impl Bench {
     pub(crate) fn run(&self) -> Result<()> {
         let (part, result) = match &self.part {
             Part::Sim(bench) => ("sim", bench.run()),
+            Part::Fidelity(bench) => ("fidelity", bench.run()),
             Part::Learner(bench) => ("learner", bench.run()),
             Part::Ipc(bench) => ("ipc", bench.run()),
             Part::Scheduler(bench) => ("scheduler", bench.run()),

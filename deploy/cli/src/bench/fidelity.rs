@@ -1,0 +1,94 @@
+//! `ampco bench fidelity`: how true the physics is, an engine beside another.
+//!
+//! Separate because speed without it is worth nothing. The computing is in `fidelity`; this file runs
+//! it, prints the table, and carries cases and traces to and from another simulator by files.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use fidelity::{Engine, Row, Traces, case, cases, markdown, measure, rows};
+use serde_json::{Map, Value, json};
+
+/// Errors of the physics engines in the same cases, as a Markdown table
+#[derive(Debug, clap::Args)]
+pub(crate) struct FidelityBench {
+    /// Robots in the stress run of 20 s
+    #[arg(long, default_value_t = 128)]
+    robots: usize,
+    /// Robots of it that rapier simulates too; each takes half a second
+    #[arg(long, default_value_t = 16)]
+    rapier_robots: usize,
+    /// Write the robot and the cases to this file for another simulator, and end
+    #[arg(long, value_name = "FILE")]
+    cases: Option<PathBuf>,
+    /// Judge the traces in this file, of another simulator, beside ours
+    #[arg(long, value_name = "FILE")]
+    beside: Option<PathBuf>,
+}
+
+impl FidelityBench {
+    pub(crate) fn run(&self) -> Result<Value> {
+        let (cases, stress) = (cases::all(), cases::stress(self.robots));
+        if let Some(path) = &self.cases {
+            let document = json!({
+                "document": g1::mjcf::document(&g1::mjcf::Physics {
+                    timestep: f64::from(sim::world::PHYSICS_STEP),
+                    gravity: f64::from(sim::world::GRAVITY),
+                    friction: 1.0,
+                }),
+                "step": case::STEP,
+                "hold": case::HOLD,
+                "finer": measure::FINER,
+                "cases": cases,
+                "stress": stress,
+            });
+            write(path, document.to_string().as_bytes())?;
+            return Ok(json!({ "cases": path }));
+        }
+        // Read first: a wrong file should not cost a minute.
+        let beside = self.beside.as_deref().map(read).transpose()?;
+        let few = &stress[..self.rapier_robots.min(stress.len())];
+        let mut all = vec![
+            Traces::of(Engine::Batched, "batched", &cases, &stress),
+            Traces::of(Engine::Rapier, "rapier", &cases, few),
+        ];
+        all.extend(beside);
+        let judged: Vec<(&str, Vec<Row>)> = all
+            .iter()
+            .map(|traces| (traces.engine.as_str(), rows(traces)))
+            .collect();
+        let mut err = std::io::stderr().lock();
+        writeln!(err, "{}", markdown(&judged)).context("writing to standard error")?;
+        let engines: Map<String, Value> = judged
+            .iter()
+            .map(|(engine, rows)| ((*engine).to_owned(), json!(rows)))
+            .collect();
+        Ok(Value::Object(engines))
+    }
+}
+
+fn read(path: &Path) -> Result<Traces> {
+    let text = std::fs::read(path).with_context(|| format!("reading {}", path.display()))?;
+    serde_json::from_slice(&text).with_context(|| {
+        format!(
+            "{} holds no traces; let deploy/fidelity.py write them",
+            path.display()
+        )
+    })
+}
+
+/// Beside, synced, then renamed: a file of that name is always whole.
+fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+    let mut name = path
+        .file_name()
+        .with_context(|| format!("{} names no file; give --cases a file", path.display()))?
+        .to_owned();
+    name.push(".new");
+    let new = path.with_file_name(name);
+    let writing = || format!("writing {}", new.display());
+    let mut file = std::fs::File::create(&new).with_context(writing)?;
+    file.write_all(bytes).with_context(writing)?;
+    file.sync_all().with_context(writing)?;
+    std::fs::rename(&new, path).with_context(|| format!("renaming {}", new.display()))
+}
