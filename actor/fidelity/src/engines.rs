@@ -142,7 +142,7 @@ impl<'a> Recorder<'a> {
     }
 
     fn keep(&mut self, step: usize, frame: impl FnOnce() -> Frame) {
-        if (step + 1) % self.case.every == 0 {
+        if (step + 1).is_multiple_of(self.case.every) {
             self.frames.push(Frame {
                 peak: self.peak,
                 force: self.sum / self.steps.max(1) as f32,

@@ -16,7 +16,7 @@ fn chromium() -> Option<PathBuf> {
         .flat_map(|folder| names.map(|name| folder.join(name)))
         .find(|path| path.is_file());
     if found.is_none() {
-        println!("skipped: no chromium, chromium-browser or google-chrome on the path");
+        eprintln!("skipped: no chromium, chromium-browser or google-chrome on the path");
     }
     found
 }

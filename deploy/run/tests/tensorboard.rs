@@ -23,7 +23,7 @@ fn python() -> Option<String> {
         .output()
         .is_ok_and(|output| output.status.success());
     if !has {
-        println!("skipped: {python} has no package tensorboard; name one with AMPCO_PYTHON");
+        eprintln!("skipped: {python} has no package tensorboard; name one with AMPCO_PYTHON");
     }
     has.then_some(python)
 }

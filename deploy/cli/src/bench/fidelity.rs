@@ -33,8 +33,8 @@ impl FidelityBench {
         if let Some(path) = &self.cases {
             let document = json!({
                 "document": g1::mjcf::document(&g1::mjcf::Physics {
-                    timestep: f64::from(sim::world::PHYSICS_STEP),
-                    gravity: f64::from(sim::world::GRAVITY),
+                    timestep: case::STEP,
+                    gravity: 9.81,
                     friction: 1.0,
                 }),
                 "step": case::STEP,
