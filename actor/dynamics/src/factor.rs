@@ -35,6 +35,7 @@ macro_rules! each {
         $({ const $name: usize = $value; $body })*
     };
 }
+pub(crate) use each;
 
 /// Factors in place: limbs, then the trunk that they load.
 ///
@@ -76,7 +77,9 @@ pub(crate) fn factor<L: Lane>(
             }
         });
         let inverse = zero.lit(1.0) / row[I];
-        pivots[I] = row[I];
+        if I > 0 {
+            pivots[I] = row[I];
+        }
         each!(J in [0 1 2 3 4 5 6] {
             if J < I {
                 trunk[I][J] = row[J] * inverse;
