@@ -96,6 +96,27 @@ impl<T: Real> Block<T> {
         block
     }
 
+    /// The state as rows of known number, so that none of them has to be looked for.
+    #[inline(always)]
+    pub(crate) fn rows(&self) -> &[Row<T>; row::STATE] {
+        self.state.as_slice().try_into().expect("a whole state")
+    }
+
+    /// Likewise, to be written.
+    #[inline(always)]
+    pub(crate) fn rows_mut(&mut self) -> &mut [Row<T>; row::STATE] {
+        self.state.as_mut_slice().try_into().expect("a whole state")
+    }
+
+    /// The ten numbers of a body.
+    #[inline(always)]
+    pub(crate) fn body(&self, body: usize) -> &[Row<T>; row::PER_BODY] {
+        let first = body * row::PER_BODY;
+        self.bodies[first..first + row::PER_BODY]
+            .try_into()
+            .expect("ten numbers")
+    }
+
     /// Makes one robot of something else.
     pub(crate) fn set_build(&mut self, lane: usize, build: &Build) {
         for body in 0..BODIES {

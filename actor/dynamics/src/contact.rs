@@ -34,6 +34,8 @@ pub(crate) struct Contact<L> {
     y: [[L; CHAIN]; 3],
     /// What is missing to the wanted velocities before any impulse, m/s.
     missing: [L; 3],
+    /// What a normal impulse does along the tangents, 1/kg.
+    across: [L; 2],
     /// Impulse per missing velocity along the normal, kg; 0 in lanes without contact.
     step: L,
     /// Softness along the normal, 1/kg.
@@ -69,6 +71,7 @@ impl<L: Lane> Contacts<L> {
             point: 0,
             y: [[zero; CHAIN]; 3],
             missing: [zero; 3],
+            across: [zero; 2],
             step: zero,
             soft: zero,
             grip: [zero; 3],
@@ -167,8 +170,9 @@ impl<L: Lane> Contacts<L> {
                 now = Vec3::new(s.dot(now), t.dot(now), n.dot(now));
                 frame = Some(below.frame);
             }
-            self.reach.at(at, frame, &mut contact.y);
-            contact.meet(touch, block, touching, distance, [now.z, now.x, now.y]);
+            let products = self.reach.at(at, frame, &mut contact.y);
+            let now = [now.z, now.x, now.y];
+            contact.meet(touch, block, touching, distance, now, products);
         }
         count
     }
@@ -237,8 +241,8 @@ pub(crate) fn weights(tree: &Tree<f64>) -> [f64; POINTS] {
             reach.fill::<TRUNK, 5>(limb, moved, &walk, factor, 0.0);
         }
         let mut y = [[0.0; CHAIN]; 3];
-        reach.at(walk.points[point], None, &mut y);
-        y.iter().flatten().map(|y| y * y).sum::<f64>() / 3.0
+        let [normal, _, _, first, _, second] = reach.at(walk.points[point], None, &mut y);
+        (normal + first + second) / 3.0
     })
 }
 
@@ -252,16 +256,11 @@ impl<L: Lane> Contact<L> {
         touching: L::Mask,
         distance: L,
         now: [L; 3],
+        products: [L; 6],
     ) {
         let (zero, one) = (touch.dt.lit(0.0), touch.dt.lit(1.0));
-        let y = &self.y;
-        let (mut normal, mut first, mut mixed, mut second) = (zero, zero, zero, zero);
-        for i in 0..CHAIN {
-            normal = y[0][i].mul_add(y[0][i], normal);
-            first = y[1][i].mul_add(y[1][i], first);
-            mixed = y[1][i].mul_add(y[2][i], mixed);
-            second = y[2][i].mul_add(y[2][i], second);
-        }
+        let [normal, one_way, other_way, first, mixed, second] = products;
+        self.across = [one_way, other_way];
         let depth = (-distance * distance.lit(1.0 / WIDTH)).max(zero).min(one);
         let impedance = depth.mul_add(
             distance.lit(IMPEDANCE[1] - IMPEDANCE[0]),

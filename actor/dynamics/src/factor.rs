@@ -35,11 +35,12 @@ macro_rules! each {
         $({ const $name: usize = $value; $body })*
     };
 }
+pub(crate) use each;
 
 /// Factors in place: limbs, then the trunk that they load.
 ///
 /// Row by row with all that was eliminated before, instead of spreading every row at once: a row's
-/// sums stay in registers and are stored once.
+/// sums stay in registers and are stored once. A row before its division is the row times its pivot.
 #[inline(always)]
 pub(crate) fn factor<L: Lane>(
     trunk: &mut [[L; TRUNK]; TRUNK],
@@ -62,20 +63,28 @@ pub(crate) fn factor<L: Lane>(
         }
     }
     // The waist is the trunk's last row and the degree after both legs.
-    let mut plain = [[zero; TRUNK]; TRUNK];
+    let mut pivots = [zero; TRUNK];
     each!(I in [6 5 4 3 2 1 0] {
         let mut row = trunk[I];
-        for k in I + 1..TRUNK {
-            let a = trunk[k][I];
-            for j in 0..=I {
-                row[j] = a.neg_mul_add(plain[k][j], row[j]);
+        each!(K in [1 2 3 4 5 6] {
+            if K > I {
+                let a = trunk[K][I] * pivots[K];
+                each!(J in [0 1 2 3 4 5 6] {
+                    if J <= I {
+                        row[J] = a.neg_mul_add(trunk[K][J], row[J]);
+                    }
+                });
             }
-        }
+        });
         let inverse = zero.lit(1.0) / row[I];
-        for j in 0..I {
-            plain[I][j] = row[j];
-            trunk[I][j] = row[j] * inverse;
+        if I > 0 {
+            pivots[I] = row[I];
         }
+        each!(J in [0 1 2 3 4 5 6] {
+            if J < I {
+                trunk[I][J] = row[J] * inverse;
+            }
+        });
         root[trunk_degree(I)] = inverse.sqrt();
     });
 }
@@ -96,44 +105,50 @@ fn eliminate_limb<L: Lane, const PREFIX: usize, const COUNT: usize>(
     root: &mut [L],
     load: &mut [[L; TRUNK]; TRUNK],
 ) {
-    // Rows before the division by their diagonal.
     let one = rows[0][0].lit(1.0);
-    let mut plain = [[one; CHAIN]; LIMB_JOINTS];
+    let mut pivots = [one; LIMB_JOINTS];
     each!(I in [5 4 3 2 1 0] {
         if I < COUNT {
-            let mut row = [one; CHAIN];
-            for j in 0..=PREFIX + I {
-                row[j] = rows[I][j];
-            }
-            for k in I + 1..COUNT {
-                let a = rows[k][PREFIX + I];
-                for j in 0..=PREFIX + I {
-                    row[j] = a.neg_mul_add(plain[k][j], row[j]);
+            let mut row = rows[I];
+            each!(K in [1 2 3 4 5] {
+                if K > I && K < COUNT {
+                    let a = rows[K][PREFIX + I] * pivots[K];
+                    each!(J in [0 1 2 3 4 5 6 7 8 9 10 11] {
+                        if J <= PREFIX + I {
+                            row[J] = a.neg_mul_add(rows[K][J], row[J]);
+                        }
+                    });
                 }
-            }
-            let inverse = one / row[PREFIX + I];
-            for j in 0..PREFIX + I {
-                plain[I][j] = row[j];
-                rows[I][j] = row[j] * inverse;
-            }
+            });
+            let pivot = row[PREFIX + I];
+            let inverse = one / pivot;
+            pivots[I] = pivot;
+            each!(J in [0 1 2 3 4 5 6 7 8 9 10 11] {
+                if J < PREFIX + I {
+                    rows[I][J] = row[J] * inverse;
+                }
+            });
             root[I] = inverse.sqrt();
         }
     });
     each!(I in [0 1 2 3 4 5 6] {
         if I < PREFIX {
-            let mut row = [one; TRUNK];
-            for j in 0..=I {
-                row[j] = load[I][j];
-            }
-            for k in 0..COUNT {
-                let a = rows[k][I];
-                for j in 0..=I {
-                    row[j] = a.mul_add(plain[k][j], row[j]);
+            let mut row = load[I];
+            each!(K in [0 1 2 3 4 5] {
+                if K < COUNT {
+                    let a = rows[K][I] * pivots[K];
+                    each!(J in [0 1 2 3 4 5 6] {
+                        if J <= I {
+                            row[J] = a.mul_add(rows[K][J], row[J]);
+                        }
+                    });
                 }
-            }
-            for j in 0..=I {
-                load[I][j] = row[j];
-            }
+            });
+            each!(J in [0 1 2 3 4 5 6] {
+                if J <= I {
+                    load[I][J] = row[J];
+                }
+            });
         }
     });
 }
@@ -237,20 +252,45 @@ impl<L: Lane> Factor<'_, L> {
             }
             x[degree] = value;
         }
-        for limb in 0..LIMBS {
-            let (prefix, count) = limb_shape(limb);
-            let first = limb_degree(limb);
-            for k in 0..count {
-                let row = &self.limbs[limb][k];
-                let mut value = x[first + k] * self.root[first + k];
-                for i in 0..prefix {
-                    value = row[i].neg_mul_add(x[trunk_degree(i)], value);
-                }
-                for i in 0..k {
-                    value = row[prefix + i].neg_mul_add(x[first + i], value);
-                }
-                x[first + k] = value;
-            }
+        for limb in 0..2 {
+            self.velocity_limb::<BASE, 6>(limb, x);
         }
+        for limb in 2..LIMBS {
+            self.velocity_limb::<TRUNK, 5>(limb, x);
+        }
+    }
+
+    #[inline(always)]
+    fn velocity_limb<const PREFIX: usize, const COUNT: usize>(
+        &self,
+        limb: usize,
+        x: &mut [L; DEGREES],
+    ) {
+        let first = limb_degree(limb);
+        let rows = &self.limbs[limb];
+        let mut chain = [x[0]; CHAIN];
+        each!(I in [0 1 2 3 4 5 6] {
+            if I < PREFIX {
+                chain[I] = x[trunk_degree(I)];
+            }
+        });
+        each!(K in [0 1 2 3 4 5] {
+            if K < COUNT {
+                // Two sums, for one would wait for itself.
+                let mut value = x[first + K] * self.root[first + K];
+                let mut other = rows[K][0] * chain[0];
+                each!(I in [1 2 3 4 5 6 7 8 9 10] {
+                    if I < PREFIX + K {
+                        if I % 2 == 0 {
+                            other = rows[K][I].mul_add(chain[I], other);
+                        } else {
+                            value = rows[K][I].neg_mul_add(chain[I], value);
+                        }
+                    }
+                });
+                chain[PREFIX + K] = value - other;
+                x[first + K] = chain[PREFIX + K];
+            }
+        });
     }
 }

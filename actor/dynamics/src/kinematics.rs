@@ -6,9 +6,12 @@
 //! world axes about the root point, so that composites and forces are plain sums.
 
 use crate::block::{Block, row};
+use crate::factor::each;
 use crate::lane::Lane;
 use crate::spatial::{Inertia, Rotation, Spatial, Symmetric, Vec3};
-use crate::tree::{BASE, CHAIN, DEGREES, LIMB_FIRST, LIMB_JOINTS, LIMBS, POINTS, TRUNK, Tree};
+use crate::tree::{
+    BASE, CHAIN, DEGREES, LIMB_FIRST, LIMB_JOINTS, LIMBS, POINTS, SHAPES, TRUNK, Tree,
+};
 use g1::{BODIES, JOINTS, joints, links};
 
 /// Gravity, m/s².
@@ -84,7 +87,8 @@ impl<L: Lane> Walk<L> {
         block: &Block<L::Scalar>,
         lane: usize,
     ) {
-        let get = |row: usize| -> L { block.state[row].get(token, lane) };
+        let state = block.rows();
+        let get = |row: usize| -> L { state[row].get(token, lane) };
         let zero = L::splat(token, L::Scalar::default());
         let none = Vec3::new(zero, zero, zero);
         let q = row::QUATERNION;
@@ -110,7 +114,15 @@ impl<L: Lane> Walk<L> {
             whole = whole.add(&inertia);
             force = force.add(load);
         }
-        let torso = self.hinge(token, tree, block, lane, joints::WAIST, &pelvis);
+        let torso = self.hinge(
+            token,
+            tree,
+            block,
+            lane,
+            joints::WAIST,
+            SHAPES[joints::WAIST],
+            &pelvis,
+        );
         let (mut upper, mut load) = self.body(token, tree, block, lane, links::TORSO, &torso);
         for limb in 2..LIMBS {
             let (inertia, of_arm) = self.limb::<TRUNK, 5>(token, tree, block, lane, limb, &torso);
@@ -139,23 +151,27 @@ impl<L: Lane> Walk<L> {
     #[inline(always)]
     fn base(&mut self, whole: &Inertia<L>, force: &Spatial<L>, zero: L) {
         let (m, h, j) = (whole.mass, whole.moment, &whole.rotational);
-        let rows: [&[L]; BASE] = [
-            &[m],
-            &[zero, m],
-            &[zero, zero, m],
-            &[zero, -h.z, h.y, j.xx],
-            &[h.z, zero, -h.x, j.xy, j.yy],
-            &[-h.y, h.x, zero, j.xz, j.yz, j.zz],
+        let trunk = &mut self.trunk;
+        trunk[0][0] = m;
+        [trunk[1][0], trunk[1][1]] = [zero, m];
+        [trunk[2][0], trunk[2][1], trunk[2][2]] = [zero, zero, m];
+        let rows = [
+            [zero, -h.z, h.y, j.xx, zero, zero],
+            [h.z, zero, -h.x, j.xy, j.yy, zero],
+            [-h.y, h.x, zero, j.xz, j.yz, j.zz],
         ];
-        for (to, from) in self.trunk.iter_mut().zip(rows) {
-            for (to, from) in to.iter_mut().zip(from) {
-                *to = *from;
-            }
-        }
+        each!(I in [0 1 2] {
+            each!(J in [0 1 2 3 4 5] {
+                if J <= 3 + I {
+                    trunk[3 + I][J] = rows[I][J];
+                }
+            });
+        });
         let (f, n) = (force.shift, force.turn);
-        for (to, from) in self.bias.iter_mut().zip([f.x, f.y, f.z, n.x, n.y, n.z]) {
-            *to = from;
-        }
+        let bias = [f.x, f.y, f.z, n.x, n.y, n.z];
+        each!(I in [0 1 2 3 4 5] {
+            self.bias[I] = bias[I];
+        });
     }
 
     /// A limb down and up; returns what it weighs and how it loads its root.
@@ -171,12 +187,17 @@ impl<L: Lane> Walk<L> {
     ) -> (Inertia<L>, Spatial<L>) {
         let first = LIMB_FIRST[limb];
         let mut frame = *root;
-        for k in 0..COUNT {
-            frame = self.hinge(token, tree, block, lane, first + k, &frame);
-            self.bodies[k] = self.body(token, tree, block, lane, first + k + 1, &frame);
-        }
+        each!(K in [0 1 2 3 4 5] {
+            if K < COUNT {
+                let shape = SHAPES[if PREFIX == BASE { K } else { LIMB_FIRST[2] + K }];
+                frame = self.hinge(token, tree, block, lane, first + K, shape, &frame);
+                self.bodies[K] = self.body(token, tree, block, lane, first + K + 1, &frame);
+            }
+        });
         let (mut whole, mut load) = self.bodies[COUNT - 1];
-        for k in (0..COUNT).rev() {
+        each!(K in [5 4 3 2 1 0] {
+            if K < COUNT {
+            let k = K;
             let motion = self.motions[first + k];
             let moved = whole.times(motion);
             self.bias[BASE + first + k] = motion.dot(load);
@@ -190,15 +211,18 @@ impl<L: Lane> Walk<L> {
             if PREFIX == TRUNK {
                 rows[BASE] = self.motions[joints::WAIST].dot(moved);
             }
-            for m in 0..=k {
-                rows[PREFIX + m] = self.motions[first + m].dot(moved);
-            }
+            each!(M in [0 1 2 3 4 5] {
+                if M <= K {
+                    rows[PREFIX + M] = self.motions[first + M].dot(moved);
+                }
+            });
             rows[PREFIX + k] = rows[PREFIX + k] + L::splat(token, tree.hinges[first + k].armature);
             if k > 0 {
                 whole = whole.add(&self.bodies[k - 1].0);
                 load = load.add(self.bodies[k - 1].1);
             }
-        }
+            }
+        });
         (whole, load)
     }
 
@@ -211,25 +235,28 @@ impl<L: Lane> Walk<L> {
         block: &Block<L::Scalar>,
         lane: usize,
         joint: usize,
+        (axis, placed): (usize, bool),
         parent: &Frame<L>,
     ) -> Frame<L> {
         let hinge = &tree.hinges[joint];
         let origin = Vec3::splat(token, hinge.origin);
         let position = parent.orientation.turn_add(origin, parent.position);
         let mut r = parent.orientation;
-        if let Some([x, y, z]) = hinge.placed {
+        if placed {
+            let [x, y, z] = hinge.placed;
             r = Rotation {
                 x: parent.orientation.turn(Vec3::splat(token, x)),
                 y: parent.orientation.turn(Vec3::splat(token, y)),
                 z: parent.orientation.turn(Vec3::splat(token, z)),
             };
         }
-        let q: L = block.state[row::JOINT + joint].get(token, lane);
-        let speed: L = block.state[row::SPEED + joint].get(token, lane);
+        let state = block.rows();
+        let q: L = state[row::JOINT + joint].get(token, lane);
+        let speed: L = state[row::SPEED + joint].get(token, lane);
         let (sin, cos) = q.sin_cos();
         let ahead = |a: Vec3<L>, b: Vec3<L>| b.scale_add(sin, a.scale(cos));
         let behind = |a: Vec3<L>, b: Vec3<L>| b.scale_add(-sin, a.scale(cos));
-        let (axis, orientation) = match hinge.axis {
+        let (axis, orientation) = match axis {
             0 => (
                 r.x,
                 Rotation {
@@ -282,7 +309,8 @@ impl<L: Lane> Walk<L> {
         body: usize,
         frame: &Frame<L>,
     ) -> (Inertia<L>, Spatial<L>) {
-        let get = |i: usize| -> L { block.bodies[body * row::PER_BODY + i].get(token, lane) };
+        let numbers = block.body(body);
+        let get = |i: usize| -> L { numbers[i].get(token, lane) };
         let centre = frame
             .orientation
             .turn_add(Vec3::new(get(1), get(2), get(3)), frame.position);

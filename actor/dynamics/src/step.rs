@@ -44,15 +44,22 @@ pub(crate) struct Room<L: Lane> {
     walk: Walk<L>,
     root: [L; DEGREES],
     contacts: Contacts<L>,
+    torques: [Torque<L>; JOINTS],
 }
 
 impl<L: Lane> Room<L> {
     #[inline(always)]
     pub(crate) fn new(token: L::Token) -> Self {
+        let zero = L::splat(token, L::Scalar::default());
+        let torque = Torque {
+            constant: zero,
+            damping: zero,
+        };
         Self {
             walk: Walk::new(token),
-            root: [L::splat(token, L::Scalar::default()); DEGREES],
+            root: [zero; DEGREES],
             contacts: Contacts::none(token),
+            torques: [torque; JOINTS],
         }
     }
 }
@@ -72,6 +79,7 @@ pub(crate) fn step<L: Lane>(
     let walk = &mut room.walk;
     walk.run(token, setting.tree, block, lane);
 
+    let state = block.rows();
     let mut velocity = [dt; DEGREES];
     for (i, velocity) in velocity.iter_mut().enumerate() {
         let at = if i < BASE {
@@ -79,7 +87,7 @@ pub(crate) fn step<L: Lane>(
         } else {
             row::SPEED + i - BASE
         };
-        *velocity = block.state[at].get(token, lane);
+        *velocity = state[at].get(token, lane);
     }
     // dt·force on every degree, then half-way to a velocity.
     let mut x = [dt; DEGREES];
@@ -87,12 +95,9 @@ pub(crate) fn step<L: Lane>(
         x[i] = -(dt * walk.bias[i]);
     }
     let (zero, ahead) = (dt.lit(0.0), dt * dt.lit(AHEAD));
-    let mut torques = [Torque {
-        constant: zero,
-        damping: zero,
-    }; JOINTS];
+    let torques = &mut room.torques;
     for joint in 0..JOINTS {
-        let q: L = block.state[row::JOINT + joint].get(token, lane);
+        let q: L = state[row::JOINT + joint].get(token, lane);
         let speed = velocity[BASE + joint];
         let number = |x: L::Scalar| L::splat(token, x);
         let torque = Torque::of_motor(
@@ -195,16 +200,17 @@ fn integrate<L: Lane>(
     velocity: &[L; DEGREES],
     block: &mut Block<L::Scalar>,
 ) {
+    let state = block.rows_mut();
     for (i, &velocity) in velocity.iter().enumerate() {
         let (place, rate) = match i {
             0..3 => (Some(row::POSITION + i), row::LINEAR + i),
             3..BASE => (None, row::LINEAR + i),
             _ => (Some(row::JOINT + i - BASE), row::SPEED + i - BASE),
         };
-        block.state[rate].set(lane, velocity);
+        state[rate].set(lane, velocity);
         if let Some(place) = place {
-            let before: L = block.state[place].get(token, lane);
-            block.state[place].set(lane, velocity.mul_add(dt, before));
+            let before: L = state[place].get(token, lane);
+            state[place].set(lane, velocity.mul_add(dt, before));
         }
     }
     let half = dt * dt.lit(0.5);
@@ -221,7 +227,7 @@ fn integrate<L: Lane>(
         .mul_add(square, dt.lit(-0.5))
         .mul_add(square, one);
     let (a, b, c) = (a * sinc, b * sinc, c * sinc);
-    let get = |i: usize| -> L { block.state[row::QUATERNION + i].get(token, lane) };
+    let get = |i: usize| -> L { state[row::QUATERNION + i].get(token, lane) };
     let (w, i, j, k) = (get(0), get(1), get(2), get(3));
     let turned = [
         k.neg_mul_add(c, j.neg_mul_add(b, i.neg_mul_add(a, w * cos))),
@@ -233,6 +239,6 @@ fn integrate<L: Lane>(
     let norm = w.mul_add(w, i.mul_add(i, j.mul_add(j, k * k)));
     let scale = one / norm.sqrt();
     for (at, value) in turned.into_iter().enumerate() {
-        block.state[row::QUATERNION + at].set(lane, value * scale);
+        state[row::QUATERNION + at].set(lane, value * scale);
     }
 }

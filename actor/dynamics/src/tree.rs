@@ -114,15 +114,33 @@ pub const POINT_TABLE: [Point; POINTS] = [
     point(23, 0.17, 0.0, 0.0),
 ];
 
+/// Axis of every joint (0, 1, 2: along x, y, z of its frame), and whether that frame is turned: known
+/// when the solver is compiled. Left and right are alike.
+pub(crate) const SHAPES: [(usize, bool); JOINTS] = {
+    let mut shapes = [(0, false); JOINTS];
+    let mut i = 0;
+    while i < JOINTS {
+        let ([_, y, z], [roll, pitch, yaw]) = (JOINT_TABLE[i].axis, JOINT_TABLE[i].rpy);
+        let axis = if z == 1.0 {
+            2
+        } else if y == 1.0 {
+            1
+        } else {
+            0
+        };
+        shapes[i] = (axis, roll != 0.0 || pitch != 0.0 || yaw != 0.0);
+        i += 1;
+    }
+    shapes
+};
+
 /// A hinge as the solver sees it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hinge<T> {
-    /// 0, 1, 2: along x, y, z of the joint frame.
-    pub(crate) axis: usize,
     /// Origin in the parent frame, m.
     pub(crate) origin: [T; 3],
-    /// Columns of the joint frame's orientation in the parent frame where it is turned.
-    pub(crate) placed: Option<[[T; 3]; 3]>,
+    /// Columns of the joint frame's orientation in the parent frame.
+    pub(crate) placed: [[T; 3]; 3],
     pub(crate) lower: T,
     pub(crate) upper: T,
     pub(crate) armature: T,
@@ -158,18 +176,10 @@ impl<T: Real> Tree<T> {
             let joint = &JOINT_TABLE[i];
             let [roll, pitch, yaw] = joint.rpy;
             let placed = Rotation3::from_euler_angles(roll, pitch, yaw);
-            let turned = joint.rpy.iter().any(|&angle| angle != 0.0);
             Hinge {
-                axis: joint
-                    .axis
-                    .iter()
-                    .position(|&x| x == 1.0)
-                    .expect("axes are along x, y or z"),
                 origin: joint.origin.map(T::of),
-                placed: turned.then(|| {
-                    std::array::from_fn(|column| {
-                        std::array::from_fn(|row| T::of(placed[(row, column)]))
-                    })
+                placed: std::array::from_fn(|column| {
+                    std::array::from_fn(|row| T::of(placed[(row, column)]))
                 }),
                 lower: T::of(joint.lower),
                 upper: T::of(joint.upper),
@@ -243,6 +253,18 @@ mod tests {
             }
         }
         assert_eq!(JOINT_TABLE[joints::WAIST].parent, links::PELVIS);
+    }
+
+    #[test]
+    fn left_and_right_joints_have_the_same_shape() {
+        for limb in [0, 2] {
+            let (left, right) = (LIMB_FIRST[limb], LIMB_FIRST[limb + 1]);
+            for k in 0..right.abs_diff(left).min(6 - limb / 2) {
+                assert_eq!(SHAPES[left + k], SHAPES[right + k]);
+            }
+        }
+        assert_eq!(SHAPES[3], (1, true)); // knee: pitch, in a turned frame
+        assert_eq!(SHAPES[joints::WAIST], (2, false));
     }
 
     #[test]

@@ -63,25 +63,40 @@ impl<L: Lane> Reach<L> {
         }
     }
 
-    /// ζ of unit forces at a point along normal and tangents: z, x, y unless the ground is turned.
+    /// ζ of unit forces at a point along normal and tangents (z, x, y unless the ground is turned), and
+    /// their products: 00, 01, 02, 11, 12, 22.
     #[inline(always)]
-    pub(crate) fn at(&self, at: Vec3<L>, frame: Option<[Vec3<L>; 3]>, y: &mut [[L; CHAIN]; 3]) {
+    pub(crate) fn at(
+        &self,
+        at: Vec3<L>,
+        frame: Option<[Vec3<L>; 3]>,
+        y: &mut [[L; CHAIN]; 3],
+    ) -> [L; 6] {
         let (f, m) = (&self.forces, &self.moments);
+        let mut products = [at.x.lit(0.0); 6];
         for i in 0..CHAIN {
             // The moment of e_x at r is r × e_x = (0, r_z, −r_y), and so on.
             let x_force = at.z.mul_add(m[1][i], at.y.neg_mul_add(m[2][i], f[0][i]));
             let y_force = at.x.mul_add(m[2][i], at.z.neg_mul_add(m[0][i], f[1][i]));
             let z_force = at.y.mul_add(m[0][i], at.x.neg_mul_add(m[1][i], f[2][i]));
-            let Some([n, s, t]) = frame else {
-                y[0][i] = z_force;
-                y[1][i] = x_force;
-                y[2][i] = y_force;
-                continue;
+            let [a, b, c] = match frame {
+                None => [z_force, x_force, y_force],
+                Some([n, s, t]) => {
+                    let force = Vec3::new(x_force, y_force, z_force);
+                    [n.dot(force), s.dot(force), t.dot(force)]
+                }
             };
-            let force = Vec3::new(x_force, y_force, z_force);
-            y[0][i] = n.dot(force);
-            y[1][i] = s.dot(force);
-            y[2][i] = t.dot(force);
+            (y[0][i], y[1][i], y[2][i]) = (a, b, c);
+            let [aa, ab, ac, bb, bc, cc] = products;
+            products = [
+                a.mul_add(a, aa),
+                a.mul_add(b, ab),
+                a.mul_add(c, ac),
+                b.mul_add(b, bb),
+                b.mul_add(c, bc),
+                c.mul_add(c, cc),
+            ];
         }
+        products
     }
 }

@@ -71,27 +71,35 @@ impl<L: Lane> Contact<L> {
     /// The normal, then both tangents at once.
     #[inline(always)]
     fn relax(&mut self, friction: L, chain: &mut [L; CHAIN]) {
+        // All three velocities at once: what the normal will change across it is known beforehand.
         let velocity = self.missing[0] + self.along(0, chain);
+        let (u, v) = (
+            self.missing[1] + self.along(1, chain),
+            self.missing[2] + self.along(2, chain),
+        );
         let resisted = self.soft.mul_add(self.impulse[0], velocity);
         let normal = resisted
             .neg_mul_add(self.step, self.impulse[0])
             .max(friction.lit(0.0));
-        self.push(0, normal - self.impulse[0], chain);
-        self.impulse[0] = normal;
-
-        let u = self.missing[1] + self.along(1, chain);
-        let v = self.missing[2] + self.along(2, chain);
+        let more = normal - self.impulse[0];
+        let u = self.across[0].mul_add(more, u);
+        let v = self.across[1].mul_add(more, v);
         let [p, q, r] = self.grip;
-        let a = p.neg_mul_add(u, q.neg_mul_add(v, self.impulse[1]));
-        let b = q.neg_mul_add(u, r.neg_mul_add(v, self.impulse[2]));
-        // Into the disk of radius μ·λ_n.
-        let tiny = friction.lit(1e-12);
-        let length = a.mul_add(a, b.mul_add(b, tiny)).sqrt();
-        let share = (friction * normal / length).min(friction.lit(1.0));
-        let (a, b) = (a * share, b * share);
-        self.push(1, a - self.impulse[1], chain);
-        self.push(2, b - self.impulse[2], chain);
-        self.impulse[1] = a;
-        self.impulse[2] = b;
+        let mut a = p.neg_mul_add(u, q.neg_mul_add(v, self.impulse[1]));
+        let mut b = q.neg_mul_add(u, r.neg_mul_add(v, self.impulse[2]));
+        // Into the disk of radius μ·λ_n, where any lane is beyond it.
+        let (radius, square) = (friction * normal, a.mul_add(a, b * b));
+        let slips = (radius * radius).less(square);
+        if radius.any(slips) {
+            let share = (radius / square.sqrt()).select(slips, radius.lit(1.0));
+            (a, b) = (a * share, b * share);
+        }
+        let (first, second) = (a - self.impulse[1], b - self.impulse[2]);
+        let y = &self.y;
+        for i in 0..CHAIN {
+            let pushed = y[0][i].mul_add(more, chain[i]);
+            chain[i] = y[2][i].mul_add(second, y[1][i].mul_add(first, pushed));
+        }
+        self.impulse = [normal, a, b];
     }
 }
