@@ -2,8 +2,10 @@
 //!
 //! Separate because built-in and imported motion end here, and all uses begin here.
 
+use crate::gait::Velocity;
 use g1::RobotState;
 use g1::mirror::{mirror_command, mirror_state};
+use nalgebra::{Isometry2, UnitQuaternion, Vector3};
 
 /// Time between the frames of a clip, s: the policy's step.
 pub const FRAME_SECONDS: f64 = 0.02;
@@ -39,21 +41,18 @@ impl Clip {
         self.frames.len().saturating_sub(usize::from(!self.cyclic))
     }
 
-    /// A cyclic clip repeated for at least so many seconds, going on along its command straight
-    /// ahead; any other clip as it is.
+    /// A cyclic clip repeated for at least so many seconds, going on along its command, be that a
+    /// line or a curve; any other clip as it is.
     pub fn unrolled(&self, seconds: f64) -> Self {
         let cycles = if self.cyclic {
             (seconds / self.seconds()).ceil().max(1.0) as usize
         } else {
             1
         };
-        let way = self.command[0] * self.seconds() as f32;
+        let velocity = Velocity::from(self.command);
         let ahead = |cycle: usize| {
-            self.frames.iter().map(move |frame| {
-                let mut frame = *frame;
-                frame.position.x += way * cycle as f32;
-                frame
-            })
+            let way = velocity.after(cycle as f64 * self.seconds());
+            self.frames.iter().map(move |frame| moved(frame, &way))
         };
         Self {
             frames: (0..cycles).flat_map(ahead).collect(),
@@ -74,9 +73,22 @@ impl Clip {
     }
 }
 
+/// A state carried along the ground and turned with it.
+fn moved(state: &RobotState, way: &Isometry2<f64>) -> RobotState {
+    let way: Isometry2<f32> = way.cast();
+    let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), way.rotation.angle());
+    RobotState {
+        position: turn * state.position + way.translation.vector.push(0.0),
+        orientation: turn * state.orientation,
+        linear_velocity: turn * state.linear_velocity,
+        angular_velocity: turn * state.angular_velocity,
+        ..*state
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use crate::gait;
+    use crate::gait::{self, Velocity};
 
     #[test]
     fn unrolling_goes_on_without_a_jump() {
@@ -89,5 +101,28 @@ mod tests {
             assert!((step - 0.02).abs() < 0.01, "{step}"); // 1 m/s at 50 Hz, and some bounce
         }
         assert_eq!(long.unrolled(99.0), long);
+    }
+
+    #[test]
+    fn unrolling_a_curve_comes_round_the_circle() {
+        let turn = gait::walk(Velocity {
+            forward: 0.5,
+            lateral: 0.0,
+            yaw_rate: 1.0,
+        });
+        // A circle of 0.5 m radius in 2π s: the cycle that ends after them is back near the start.
+        let long = turn.unwrap().unrolled(std::f64::consts::TAU);
+        let last = long.frames.len() - 1;
+        for pair in long.frames.windows(2) {
+            let step = (pair[1].position - pair[0].position).norm();
+            assert!(step < 0.02, "{step}"); // 0.5 m/s at 50 Hz, and some sway
+            assert!(pair[0].orientation.angle_to(&pair[1].orientation) < 0.06);
+        }
+        let centre = nalgebra::Vector2::new(0.0, 0.5);
+        for frame in &long.frames {
+            let radius = (frame.position.xy() - centre).norm();
+            assert!((radius - 0.5).abs() < 0.06, "{radius}");
+        }
+        assert!(last as f64 * crate::FRAME_SECONDS > 6.2);
     }
 }

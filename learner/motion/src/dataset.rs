@@ -203,14 +203,17 @@ fn load_clips(
     };
     let mut clips = match (source.gait, &source.file, &source.folder) {
         (Some(gait), ..) => {
-            let speed = source.speed.unwrap_or(0.0);
+            let velocity = source.velocity();
             let made = match gait {
                 Gait::Stand => Some(gait::stand()),
-                Gait::Walk => gait::walk(speed),
-                Gait::Run => gait::run(speed),
+                Gait::Walk => gait::walk(velocity),
+                Gait::Run => gait::run(velocity),
+                Gait::Start => gait::start(velocity),
+                Gait::Stop => gait::stop(velocity),
             };
-            let impossible = "no pose of the legs makes this gait; choose another speed";
-            vec![made.ok_or_else(|| wrong(format!("clips[{index}].speed"), speed, impossible))?]
+            let impossible =
+                "no pose of the legs makes this gait; lower lateral, yaw_rate or speed";
+            vec![made.ok_or_else(|| wrong(format!("clips[{index}]"), velocity, impossible))?]
         }
         (None, Some(file), _) => vec![import::load(&base_dir.join(file), &options)?],
         (None, None, Some(folder)) => tables(&base_dir.join(folder))?

@@ -12,8 +12,13 @@ use crate::failure::usage;
 /// The arguments.
 #[derive(Debug, clap::Args)]
 pub(super) struct Synth {
-    /// Walking speeds in m/s, 0.4 to 1.8
-    #[arg(long, value_name = "M/S,…", value_delimiter = ',')]
+    /// Walking speeds in m/s, -0.6 (backward) to 1.8; 0 is stepping on the spot
+    #[arg(
+        long,
+        value_name = "M/S,…",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
     walk: Vec<f64>,
     /// Running speeds in m/s, 1.8 to 2.7
     #[arg(long, value_name = "M/S,…", value_delimiter = ',')]

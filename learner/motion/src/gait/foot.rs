@@ -1,29 +1,46 @@
 //! The way of one foot through a stride: planted in stance, human in swing.
 //!
 //! Separate because ground contact is what joint curves alone get wrong. In stance the path is exact
-//! geometry of a rigid sole that rolls over its heel edge, stands flat, and rolls over its toe edge,
-//! so the touching point never slips. In swing it is the human path, bent so that it leaves and meets
-//! stance without a step in position or velocity, and lifted where the sole would scuff.
+//! geometry: the foot has a place on the ground (see `foothold.rs`), and a rigid sole there rolls over
+//! its heel edge, stands flat, and rolls over its toe edge, so the touching point never slips however
+//! the body turns above it. In swing it is the human path, bent so that it leaves and meets stance
+//! without a step in position or velocity, and lifted where the sole would scuff.
 //!
-//! The frame moves with the mean speed of the gait: x forward from the mean place of the pelvis,
-//! z up from the ground. Pitch is positive with the toe down.
+//! The frame moves with the mean motion of the gait (see `way.rs`): x forward and y left from the mean
+//! place of the pelvis, z up from the ground. Pitch is positive with the toe down.
 
+use super::foothold::{Foothold, Footing, Side};
 use super::harmonics::Harmonics;
+use super::way::Way;
 use g1::links::{SOLE_CORNERS, SOLE_DEPTH};
+use nalgebra::{Isometry3, Point2, Translation3, UnitQuaternion};
 use std::f64::consts::PI;
 
 const HEEL: f64 = SOLE_CORNERS[0][0];
 const TOE: f64 = SOLE_CORNERS[2][0];
 
-/// Where the ankle is and how the sole is pitched, in the moving frame.
+/// Where the ankle is and how the sole is turned, in the moving frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sole {
-    /// Ankle forward of the mean pelvis, m.
+    /// Ankle forward and to the left of the mean pelvis, m.
     pub(super) x: f64,
+    pub(super) y: f64,
     /// Ankle above the ground, m.
     pub(super) z: f64,
+    /// Heading of the foot, to the left positive, rad.
+    pub(super) yaw: f64,
     /// Pitch, toe down positive, rad.
     pub(super) pitch: f64,
+}
+
+impl Sole {
+    /// The frame of the foot's body in the moving frame.
+    pub(super) fn frame(&self) -> Isometry3<f64> {
+        Isometry3::from_parts(
+            Translation3::new(self.x, self.y, self.z),
+            UnitQuaternion::from_euler_angles(0.0, self.pitch, self.yaw),
+        )
+    }
 }
 
 /// How a foot rolls through stance.
@@ -40,10 +57,12 @@ pub(super) struct Rocker {
 }
 
 impl Rocker {
-    fn pitch(&self, phase: f64) -> f64 {
+    /// Pitch at a phase since contact.
+    fn pitch(&self, phase: f64, foothold: &Foothold) -> f64 {
         let heel = (1.0 - phase / self.heel_share).max(0.0);
         let toe = (1.0 + (phase - self.stance) / self.toe_share).max(0.0);
-        self.contact_pitch * heel * heel + self.toe_off_pitch * toe * toe
+        self.contact_pitch * foothold.contact * heel * heel
+            + self.toe_off_pitch * foothold.toe_off * toe * toe
     }
 }
 
@@ -51,10 +70,7 @@ impl Rocker {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FootPath {
     pub(super) rocker: Rocker,
-    /// Ground covered by a stride, m.
-    pub(super) stride: f64,
-    /// Mean place of the flat sole's ankle during stance, forward of the pelvis, m.
-    pub(super) centre: f64,
+    pub(super) footing: Footing,
     /// Human swing: ankle forward of the pelvis, lowest point of the sole, pitch.
     pub(super) swing_x: Harmonics,
     pub(super) swing_lift: Harmonics,
@@ -64,56 +80,71 @@ pub(super) struct FootPath {
 }
 
 impl FootPath {
-    /// The foot at a phase in [0, 1): stance first.
-    pub(super) fn at(&self, phase: f64) -> Sole {
-        if phase < self.rocker.stance {
-            self.stance(phase)
-        } else {
-            self.swing(phase)
+    /// The foot of a side at a phase of the way.
+    pub(super) fn at(&self, side: Side, phase: f64, way: &Way) -> Sole {
+        let own = phase + side.lag();
+        let here = self.foothold(side, own.floor(), way);
+        if here.stays || own - here.contact_phase < self.rocker.stance {
+            return self.planted(&here, own, way);
         }
+        let next = self.foothold(side, own.floor() + 1.0, way);
+        self.swing(&here, &next, own, way)
     }
 
-    fn stance(&self, phase: f64) -> Sole {
-        let flat = self.centre + self.stride * (self.rocker.stance / 2.0 - phase);
-        let pitch = self.rocker.pitch(phase);
+    fn foothold(&self, side: Side, contact_phase: f64, way: &Way) -> Foothold {
+        self.footing
+            .foothold(side, contact_phase, self.rocker.stance, way)
+    }
+
+    fn planted(&self, foothold: &Foothold, phase: f64, way: &Way) -> Sole {
+        let pitch = self.rocker.pitch(phase - foothold.contact_phase, foothold);
         // The edge that touches stays where it is on the flat sole; the ankle turns about it.
         let edge = if pitch < 0.0 { HEEL } else { TOE };
         let (sin, cos) = pitch.sin_cos();
+        let rolled = edge - (edge * cos - SOLE_DEPTH * sin);
+        let place = way.frame(phase - foothold.side.lag()).inverse() * foothold.place;
+        let ankle = place * Point2::new(rolled, 0.0);
         Sole {
-            x: flat + edge - (edge * cos - SOLE_DEPTH * sin),
+            x: ankle.x,
+            y: ankle.y,
             z: edge * sin + SOLE_DEPTH * cos,
+            yaw: place.rotation.angle(),
             pitch,
         }
     }
 
-    fn swing(&self, phase: f64) -> Sole {
-        let off = self.rocker.stance;
-        let u = (phase - off) / (1.0 - off);
-        let x = self.bent(&self.swing_x, |p| self.stance(p).x, u);
-        let pitch = self.bent(&self.swing_pitch, |p| self.stance(p).pitch, u);
-        let free = self.bent(&self.swing_lift, |_| 0.0, u);
+    /// Between two footholds: the human curve plus the cubic that closes its gaps to stance at both
+    /// ends, in value and slope.
+    fn swing(&self, from: &Foothold, to: &Foothold, phase: f64, way: &Way) -> Sole {
+        const H: f64 = 1e-5;
+        let (off, on) = (from.contact_phase + self.rocker.stance, to.contact_phase);
+        let span = on - off;
+        let u = (phase - off) / span;
+        let share = way.share(0.5 * (off + on) - from.side.lag());
+        let leaving = [off - H, off].map(|phase| self.planted(from, phase, way));
+        let meeting = [on, on + H].map(|phase| self.planted(to, phase, way));
+        let bent = |human: &dyn Fn(f64) -> f64, stance: &dyn Fn(&Sole) -> f64| {
+            let gap = |sole: &Sole, phase: f64| stance(sole) - human(phase);
+            let gap_off = gap(&leaving[1], off);
+            let gap_on = gap(&meeting[0], on);
+            let slope_off = (gap_off - gap(&leaving[0], off - H)) / H * span;
+            let slope_on = (gap(&meeting[1], on + H) - gap_on) / H * span;
+            human(phase) + hermite(u, gap_off, slope_off, gap_on, slope_on)
+        };
+        let human = |curve: &Harmonics, phase| curve.mean + share * (curve.at(phase) - curve.mean);
+        let pitch = bent(&|phase| human(&self.swing_pitch, phase), &|sole| sole.pitch);
+        let free = bent(&|phase| human(&self.swing_lift, phase), &|_| 0.0);
         let needed = self.clearance * (PI * u).sin().powi(2);
         let lift = smooth_max(free, needed, 0.02 * (PI * u).sin().powi(2));
+        // Stance turns about an edge, swing about the rounded lowest point: they differ by the rounding.
+        let rounding = bent(&|_| 0.0, &|sole| sole.z + lowest_offset(sole.pitch));
         Sole {
-            x,
-            z: lift - lowest_offset(pitch),
+            x: bent(&|phase| human(&self.swing_x, phase), &|sole| sole.x),
+            y: bent(&|_| 0.0, &|sole| sole.y),
+            z: lift + rounding - lowest_offset(pitch),
+            yaw: bent(&|_| 0.0, &|sole| sole.yaw),
             pitch,
         }
-    }
-
-    /// The human curve plus the cubic that closes its gaps to `stance` at both ends of swing, in
-    /// value and slope. (In the moving frame each stance begins at the same place.)
-    fn bent(&self, human: &Harmonics, stance: impl Fn(f64) -> f64, u: f64) -> f64 {
-        let (off, h) = (self.rocker.stance, 1e-5);
-        let span = 1.0 - off;
-        let gap_off = stance(off) - human.at(off);
-        let gap_on = stance(0.0) - human.at(1.0);
-        let slope = |f: &dyn Fn(f64) -> f64, at: f64| (f(at + h) - f(at)) / h;
-        let stance: &dyn Fn(f64) -> f64 = &stance;
-        let curve = |p: f64| human.at(p);
-        let slope_off = (slope(stance, off - h) - slope(&curve, off - h)) * span;
-        let slope_on = (slope(stance, 0.0) - slope(&curve, 0.0)) * span;
-        human.at(off + u * span) + hermite(u, gap_off, slope_off, gap_on, slope_on)
     }
 }
 
@@ -146,7 +177,30 @@ pub(super) fn lowest_offset(pitch: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::velocity::Velocity;
+    use super::super::way::Change;
     use super::*;
+
+    /// A stride of 1 m in 1 s.
+    const WAY: Way = Way {
+        velocity: Velocity {
+            forward: 1.0,
+            lateral: 0.0,
+            yaw_rate: 0.0,
+        },
+        period: 1.0,
+        change: Change::Steady,
+    };
+
+    /// Ahead, aside and turning at once.
+    const CURVE: Way = Way {
+        velocity: Velocity {
+            forward: 0.6,
+            lateral: 0.3,
+            yaw_rate: -0.8,
+        },
+        ..WAY
+    };
 
     fn path() -> FootPath {
         FootPath {
@@ -157,8 +211,11 @@ mod tests {
                 toe_off_pitch: 0.5,
                 toe_share: 0.2,
             },
-            stride: 1.0,
-            centre: 0.0,
+            footing: Footing {
+                centre: 0.0,
+                half_width: 0.1,
+                shift: 0.0,
+            },
             swing_x: Harmonics::still(0.0),
             swing_lift: Harmonics::still(0.0),
             swing_pitch: Harmonics::still(0.0),
@@ -179,11 +236,11 @@ mod tests {
         // A stride of 1 m: the ground passes at 1 m per unit of phase. Flat, the ankle is at
         // 0.3 − φ and stands 35 mm high; the heel is 50 mm behind it and the toe 120 mm ahead.
         for (phase, x) in [(0.0, HEEL), (0.05, HEEL), (0.5, TOE), (0.59, TOE)] {
-            let (forward, height) = edge(path().at(phase), x);
+            let (forward, height) = edge(path().at(Side::Right, phase, &WAY), x);
             assert!((forward - (0.3 - phase + x)).abs() < 1e-12, "phase {phase}");
             assert!(height.abs() < 1e-12, "phase {phase}");
         }
-        let flat = path().at(0.25);
+        let flat = path().at(Side::Right, 0.25, &WAY);
         assert!((flat.x - 0.05).abs() < 1e-12 && (flat.z - 0.035).abs() < 1e-12);
         assert_eq!(flat.pitch, 0.0);
     }
@@ -191,10 +248,16 @@ mod tests {
     #[test]
     fn swing_joins_stance_without_a_step() {
         let h = 1e-6;
-        for phase in [0.6, 0.0] {
+        for (way, phase) in [(WAY, 0.6), (WAY, 1.0), (CURVE, 0.6), (CURVE, 2.0)] {
             let [a, b, c, d] =
-                [-2.0 * h, -h, h, 2.0 * h].map(|d: f64| path().at((phase + d).rem_euclid(1.0)));
-            for get in [|s: Sole| s.x, |s: Sole| s.z, |s: Sole| s.pitch] {
+                [-2.0 * h, -h, h, 2.0 * h].map(|d: f64| path().at(Side::Right, phase + d, &way));
+            for get in [
+                |s: Sole| s.x,
+                |s: Sole| s.y,
+                |s: Sole| s.z,
+                |s: Sole| s.yaw,
+                |s: Sole| s.pitch,
+            ] {
                 assert!((get(c) - get(b)).abs() < 1e-4, "position at {phase}");
                 let (before, after) = ((get(b) - get(a)) / h, (get(d) - get(c)) / h);
                 assert!((before - after).abs() < 0.05, "{before} {after} at {phase}");
@@ -205,11 +268,12 @@ mod tests {
     #[test]
     fn swing_clears_the_ground() {
         for i in 1..40 {
-            let sole = path().at(0.6 + 0.01 * f64::from(i));
+            let sole = path().at(Side::Left, 0.1 + 0.01 * f64::from(i), &CURVE);
             let lowest = edge(sole, HEEL).1.min(edge(sole, TOE).1);
             assert!(lowest > 0.0, "{sole:?}");
         }
-        let (heel, toe) = (edge(path().at(0.8), HEEL).1, edge(path().at(0.8), TOE).1);
+        let middle = path().at(Side::Left, 0.3, &CURVE);
+        let (heel, toe) = (edge(middle, HEEL).1, edge(middle, TOE).1);
         assert!(heel.min(toe) > 0.035); // 4 cm asked for in mid-swing
     }
 }

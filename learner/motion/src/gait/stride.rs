@@ -2,18 +2,23 @@
 //!
 //! Separate because walking and running differ in figures only. The base follows its curves, each
 //! foot follows its [`FootPath`], the legs between are solved by inverse kinematics, the waist and
-//! the arms follow their curves. The left side is the right side's reflection half a stride later,
-//! so symmetry is exact. The base is carried as high as the legs allow.
+//! the arms follow their curves. The left side is solved as the right side of the reflected robot half
+//! a stride later, so a straight gait is exactly symmetric. The base is carried as high as the legs
+//! allow. Where the way only begins or ends, every curve is scaled by its share of the speed.
 
+use super::bounce::Bounce;
 use super::foot::{FootPath, lowest_offset};
+use super::foothold::Side;
 use super::harmonics::Harmonics;
 use super::leg;
+use super::way::Way;
 use g1::joints::{LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG, WAIST};
 use g1::kinematics::forward;
 use g1::mirror::ACTION_MIRROR;
-use g1::{JOINTS, RIGHT_FOOT};
-use nalgebra::{Isometry3, Translation3, UnitQuaternion};
-use std::f64::consts::{PI, TAU};
+use g1::state::STANDING_HEIGHT;
+use g1::{DEFAULT_POSE, JOINTS, RIGHT_FOOT};
+use nalgebra::{Isometry2, Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
+use std::ops::RangeInclusive;
 
 /// The pose of the robot at a moment.
 #[derive(Clone, Copy, Debug)]
@@ -42,52 +47,21 @@ pub(super) struct Base {
     pub(super) bounce: Bounce,
     /// Height that the bounce is added to, m.
     pub(super) level: f64,
+    /// How much lower the base is carried where the gait is half begun or half ended, m.
+    pub(super) crouch: f64,
 }
 
-/// How the base rises and falls.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Bounce {
-    /// Walking: over a stiff leg, highest in the middle of single support (amplitude in m).
-    Vault { amplitude: f64, stance: f64 },
-    /// Running: thrown up by stance and falling freely in flight (period in s).
-    Spring { period: f64, stance: f64 },
-}
-
-impl Bounce {
-    /// Height above the level, m.
-    pub(super) fn at(&self, phase: f64) -> f64 {
-        match *self {
-            Self::Vault { amplitude, stance } => {
-                amplitude * (2.0 * TAU * (phase - stance / 2.0)).cos()
-            }
-            Self::Spring { period, stance } => {
-                let g = super::normative::GRAVITY;
-                let (t, ground) = (phase.rem_euclid(0.5) * period, stance * period);
-                let flight = (0.5 - stance) * period;
-                if t < ground {
-                    // z̈ = −g + A·sin(πt/ground), A such that the speed turns from −g·flight/2 to +.
-                    let push = g * (ground + flight) * ground / TAU;
-                    g * t * (ground - t) / 2.0 - push * (PI * t / ground).sin()
-                } else {
-                    let t = t - ground;
-                    g * t * (flight - t) / 2.0
-                }
-            }
-        }
-    }
-}
-
-/// A periodic gait of the G1.
+/// A gait of the G1: a way over the ground and how body and feet go along it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stride {
-    /// Mean speed, m/s, and duration of a stride (two steps), s.
-    pub(super) speed: f64,
-    pub(super) period: f64,
+    pub(super) way: Way,
+    /// The phase at time 0, where the pelvis is at the world's origin.
+    pub(super) begin: f64,
+    /// Whether time runs backward: a walk seen so is a walk backward.
+    pub(super) reversed: bool,
     pub(super) leg: Leg,
     pub(super) base: Base,
     pub(super) foot: FootPath,
-    /// Half of the distance between the lines that the ankles follow, m.
-    pub(super) half_width: f64,
     pub(super) waist: Harmonics,
     /// Shoulder pitch, roll, yaw, elbow, wrist roll of the right arm, rad.
     pub(super) arm: [Harmonics; 5],
@@ -117,76 +91,118 @@ impl Stride {
         self.base.level = level;
     }
 
-    fn reaches(&self, knee: f64) -> bool {
-        const GRID: usize = 80;
-        (0..GRID).all(|i| {
-            self.right_leg(i as f64 / GRID as f64)
-                .is_some_and(|q| q[3] >= knee)
+    /// Crouches between standing and full speed as little as keeps every knee bent by at least `knee`
+    /// (rad) from one phase to another. `None` when no crouch does.
+    pub(super) fn crouched(mut self, phases: RangeInclusive<f64>, knee: f64) -> Option<Self> {
+        (0..20).find_map(|i| {
+            self.base.crouch = 0.005 * f64::from(i);
+            self.bends(phases.clone(), knee).then_some(self)
         })
     }
 
-    /// The pose at a time since right contact, s; the base moves on along x. `None` where a leg does
-    /// not reach, which [`Self::raised`] excludes.
-    pub(super) fn pose(&self, time: f64) -> Option<Pose> {
-        let phase = (time / self.period).rem_euclid(1.0);
-        let opposite = (phase + 0.5).rem_euclid(1.0);
-        let mut base = self.base_at(phase);
-        base.translation.vector.x += self.speed * time;
-        let mut joints = [0.0; JOINTS];
-        write(&mut joints, RIGHT_LEG, &self.right_leg(phase)?, false);
-        write(&mut joints, LEFT_LEG, &self.right_leg(opposite)?, true);
-        let arm = |phase: f64| self.arm.map(|curve| curve.at(phase));
-        write(&mut joints, RIGHT_ARM, &arm(phase), false);
-        write(&mut joints, LEFT_ARM, &arm(opposite), true);
-        joints[WAIST] = self.waist.at(phase);
-        Some(Pose { base, joints })
+    fn reaches(&self, knee: f64) -> bool {
+        self.bends(0.0..=1.0, knee)
     }
 
-    /// The frame of the base in the moving frame.
+    fn bends(&self, phases: RangeInclusive<f64>, knee: f64) -> bool {
+        const PER_STRIDE: f64 = 80.0;
+        let span = phases.end() - phases.start();
+        let grid = (span * PER_STRIDE).round() as usize;
+        (0..grid).all(|i| {
+            let phase = phases.start() + span * i as f64 / grid as f64;
+            [Side::Right, Side::Left]
+                .iter()
+                .all(|side| self.leg(*side, phase).is_some_and(|q| q[3] >= knee))
+        })
+    }
+
+    /// The pose at a time, s. `None` where a leg does not reach, which [`Self::raised`] excludes for
+    /// a periodic gait.
+    pub(super) fn pose(&self, time: f64) -> Option<Pose> {
+        let strides = time / self.way.period;
+        let phase = self.begin + if self.reversed { -strides } else { strides };
+        let moving = self.way.frame(self.begin).inverse() * self.way.frame(phase);
+        let mut joints = DEFAULT_POSE.map(f64::from);
+        let share = self.way.share(phase);
+        let upper = |joint: &mut f64, curve: f64| *joint += share * (curve - *joint);
+        upper(&mut joints[WAIST], self.waist.at(phase));
+        for (first, side) in [(RIGHT_ARM, Side::Right), (LEFT_ARM, Side::Left)] {
+            for (i, curve) in self.arm.iter().enumerate() {
+                let curve = reflection(first + i, side) * curve.at(phase + side.lag());
+                upper(&mut joints[first + i], curve);
+            }
+        }
+        for (first, side) in [(RIGHT_LEG, Side::Right), (LEFT_LEG, Side::Left)] {
+            for (i, q) in self.leg(side, phase)?.into_iter().enumerate() {
+                joints[first + i] = reflection(first + i, side) * q;
+            }
+        }
+        Some(Pose {
+            base: carried(&moving, &self.base_at(phase)),
+            joints,
+        })
+    }
+
+    /// The frame of the base in the moving frame; it is that of standing where the way stands still.
     fn base_at(&self, phase: f64) -> Isometry3<f64> {
-        let base = &self.base;
+        let (base, share) = (&self.base, self.way.share(phase));
+        let height = base.level + base.bounce.at(phase);
+        let crouch = 4.0 * share * (1.0 - share) * base.crouch;
         Isometry3::from_parts(
             Translation3::new(
-                base.surge.at(phase),
-                base.sway.at(phase),
-                base.level + base.bounce.at(phase),
+                share * base.surge.at(phase),
+                self.way.sway(phase) * base.sway.at(phase),
+                STANDING_HEIGHT + share * (height - STANDING_HEIGHT) - crouch,
             ),
             UnitQuaternion::from_euler_angles(
-                base.roll.at(phase),
-                base.pitch.at(phase),
-                base.yaw.at(phase),
+                share * base.roll.at(phase),
+                share * base.pitch.at(phase),
+                share * base.yaw.at(phase),
             ),
         )
     }
 
-    fn right_leg(&self, phase: f64) -> Option<[f64; 6]> {
-        let sole = self.foot.at(phase);
-        let foot = Isometry3::from_parts(
-            Translation3::new(sole.x, -self.half_width, sole.z),
-            UnitQuaternion::from_euler_angles(0.0, sole.pitch, 0.0),
-        );
+    /// The joints of a leg, those of the left as its reflection on the right has them.
+    fn leg(&self, side: Side, phase: f64) -> Option<[f64; 6]> {
+        let seen = |frame: Isometry3<f64>| match side {
+            Side::Right => frame,
+            Side::Left => reflected(&frame),
+        };
+        let foot = seen(self.foot.at(side, phase, &self.way).frame());
+        let own = phase + side.lag();
         let guess = [
-            self.leg.hip_pitch.at(phase),
+            self.leg.hip_pitch.at(own),
             0.0,
             0.0,
-            self.leg.knee.at(phase).max(0.3),
-            self.leg.ankle_pitch.at(phase),
+            self.leg.knee.at(own).max(0.3),
+            self.leg.ankle_pitch.at(own),
             0.0,
         ];
-        leg::solve(&self.base_at(phase), &foot, guess)
+        leg::solve(&seen(self.base_at(phase)), &foot, guess)
     }
 }
 
-/// Writes one side's joints, those of the left being the reflection of the right's.
-fn write(joints: &mut [f64; JOINTS], first: usize, side: &[f64], reflected: bool) {
-    for (i, &q) in side.iter().enumerate() {
-        let sign = if reflected {
-            ACTION_MIRROR.sign[first + i]
-        } else {
-            1.0
-        };
-        joints[first + i] = f64::from(sign) * q;
+/// What a joint's angle on the right side is multiplied by to be that of `side`.
+fn reflection(joint: usize, side: Side) -> f64 {
+    match side {
+        Side::Right => 1.0,
+        Side::Left => f64::from(ACTION_MIRROR.sign[joint]),
     }
+}
+
+/// A frame seen in a mirror: y → −y.
+fn reflected(frame: &Isometry3<f64>) -> Isometry3<f64> {
+    let (p, q) = (frame.translation.vector, frame.rotation.quaternion());
+    Isometry3::from_parts(
+        Translation3::new(p.x, -p.y, p.z),
+        UnitQuaternion::new_unchecked(Quaternion::new(q.w, -q.i, q.j, -q.k)),
+    )
+}
+
+/// A frame carried along the ground.
+fn carried(ground: &Isometry2<f64>, frame: &Isometry3<f64>) -> Isometry3<f64> {
+    let (p, yaw) = (ground.translation.vector, ground.rotation.angle());
+    Isometry3::new(Vector3::new(p.x, p.y, 0.0), Vector3::z() * yaw) * frame
 }
 
 /// The swing that a leg's curves make of themselves: ankle forward of the pelvis (m), lowest point
@@ -201,7 +217,7 @@ pub(super) fn human_swing(
         q[RIGHT_LEG] = leg.hip_pitch.at(phase);
         q[RIGHT_LEG + 3] = leg.knee.at(phase);
         q[RIGHT_LEG + 4] = leg.ankle_pitch.at(phase);
-        let base = Isometry3::rotation(nalgebra::Vector3::y() * pitch.at(phase));
+        let base = Isometry3::rotation(Vector3::y() * pitch.at(phase));
         forward(&base, &q)[RIGHT_FOOT].translation.vector
     };
     let sole_pitch = |phase: f64| {
@@ -212,41 +228,4 @@ pub(super) fn human_swing(
         Harmonics::of(|phase| height(phase) + ankle(phase).z + lowest_offset(sole_pitch(phase))),
         Harmonics::of(sole_pitch),
     ]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_run_falls_freely_in_flight_and_is_thrown_up_by_stance() {
-        let (period, stance) = (0.6, 0.3);
-        let bounce = Bounce::Spring { period, stance };
-        let h = 1e-4;
-        let z = |time: f64| bounce.at(time / period);
-        let acceleration = |t: f64| (z(t + h) - 2.0 * z(t) + z(t - h)) / (h * h);
-        // Half a period lasts 0.3 s: 0.18 s of stance, then 0.12 s of flight.
-        for t in [0.19, 0.24, 0.29] {
-            assert!((acceleration(t) + 9.81).abs() < 1e-3);
-        }
-        // Thrust is a half sine whose mean carries the weight of the flight too, so its peak is
-        // π/2·(0.3/0.18)·g = 2.618 g, and the acceleration g less.
-        assert!((acceleration(0.09) - 1.618 * 9.81).abs() < 0.01);
-        // In 0.12 s of flight the base rises by g·0.12²/8 = 17.7 mm.
-        assert!((z(0.24) - 0.017658).abs() < 1e-6 && z(0.18).abs() < 1e-9);
-        let speed = |t: f64| (z(t + h) - z(t - h)) / (2.0 * h);
-        for t in [0.0, 0.18, 0.3] {
-            assert!((speed(t + 2.0 * h) - speed(t - 2.0 * h)).abs() < 1e-2); // no step at contact
-        }
-    }
-
-    #[test]
-    fn a_walk_is_highest_in_the_middle_of_single_support() {
-        let bounce = Bounce::Vault {
-            amplitude: 0.02,
-            stance: 0.6,
-        };
-        // Right stance lasts to 0.6 and the left foot is off from 0.1 to 0.5: the middle is 0.3.
-        assert!((bounce.at(0.3) - 0.02).abs() < 1e-12 && (bounce.at(0.05) + 0.02).abs() < 1e-12);
-    }
 }
