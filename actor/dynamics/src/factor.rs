@@ -63,7 +63,7 @@ pub(crate) fn factor<L: Lane>(
         }
     }
     // The waist is the trunk's last row and the degree after both legs.
-    let mut pivots = [zero; TRUNK];
+    let pivots = &mut [zero; TRUNK];
     each!(I in [6 5 4 3 2 1 0] {
         let mut row = trunk[I];
         each!(K in [1 2 3 4 5 6] {
@@ -76,10 +76,9 @@ pub(crate) fn factor<L: Lane>(
                 });
             }
         });
-        let inverse = zero.lit(1.0) / row[I];
-        if I > 0 {
-            pivots[I] = row[I];
-        }
+        let pivot = row[I];
+        let inverse = zero.lit(1.0) / pivot;
+        pivots[I] = pivot;
         each!(J in [0 1 2 3 4 5 6] {
             if J < I {
                 trunk[I][J] = row[J] * inverse;
@@ -281,7 +280,7 @@ impl<L: Lane> Factor<'_, L> {
                 let mut other = rows[K][0] * chain[0];
                 each!(I in [1 2 3 4 5 6 7 8 9 10] {
                     if I < PREFIX + K {
-                        if I % 2 == 0 {
+                        if I.is_multiple_of(2) {
                             other = rows[K][I].mul_add(chain[I], other);
                         } else {
                             value = rows[K][I].neg_mul_add(chain[I], value);

@@ -227,6 +227,10 @@ impl<L: Lane> Walk<L> {
     }
 
     /// From a body across a joint to the next.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a part of `run`, split off only for its shape"
+    )]
     #[inline(always)]
     fn hinge(
         &mut self,

@@ -24,6 +24,7 @@
     clippy::needless_range_loop,
     clippy::manual_memcpy,
     clippy::reversed_empty_ranges,
+    clippy::absurd_extreme_comparisons,
     reason = "loops of known length over arrays stay in registers; iterators and copies made of calls do not"
 )]
 
