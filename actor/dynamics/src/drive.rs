@@ -38,7 +38,8 @@ impl<T: Real> Motors<T> {
 /// either, for stops are hard in the robot.
 const STOP_FREQUENCY: f64 = 150.0;
 
-/// Share of a step by which the stiffness looks ahead.
+/// Share of a step by which the stiffness looks ahead. Of 0, 0.1, 0.2 and 0.5 the one with which
+/// every row of posing and squatting (`ampco bench fidelity`) errs less than with 0.
 pub(crate) const AHEAD: f64 = 0.1;
 
 /// The torque of one joint over a step: τ = constant − damping·q̇⁺.

@@ -229,7 +229,7 @@ impl<L: Lane> Walk<L> {
     /// From a body across a joint to the next.
     #[expect(
         clippy::too_many_arguments,
-        reason = "split off only for its constants"
+        reason = "a part of `run`, split off only for its shape"
     )]
     #[inline(always)]
     fn hinge(

@@ -12,7 +12,6 @@ use g1::{JOINTS, RobotState};
 use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 use serde::{Deserialize, Serialize};
-use std::any::Any;
 
 /// Beyond these speeds (m/s, rad/s) a state is taken for a blown-up one.
 const SPEED_LIMIT: f32 = 1_000.0;
@@ -59,18 +58,6 @@ pub struct Robots {
     targets: Vec<[Row<f32>; JOINTS]>,
     tallies: Vec<Tally<f32>>,
     count: usize,
-    workshop: Workshop,
-}
-
-/// Intermediate results of a step, of whatever width the machine has: kept, for clearing them takes as
-/// long as a step. Nothing in them outlasts a step, so a clone begins without.
-#[derive(Default)]
-struct Workshop(Option<Box<dyn Any + Send + Sync>>);
-
-impl Clone for Workshop {
-    fn clone(&self) -> Self {
-        Self(None)
-    }
 }
 
 /// All that the future of [`Robots`] depends on, the solver's settings aside.
@@ -97,7 +84,6 @@ impl Robots {
             targets: vec![[Row::default(); JOINTS]; blocks],
             tallies: vec![Tally::default(); blocks],
             count,
-            workshop: Workshop::default(),
         }
     }
 
@@ -150,7 +136,7 @@ impl Robots {
         }
     }
 
-    /// Advances all robots by `steps` physics steps toward their targets. Allocates only the first time.
+    /// Advances all robots by `steps` physics steps toward their targets. Does not allocate.
     pub fn advance(&mut self, steps: usize) {
         self.arch.dispatch(Advance {
             setting: Setting {
@@ -164,7 +150,6 @@ impl Robots {
             blocks: &mut self.blocks,
             targets: &self.targets,
             tallies: &mut self.tallies,
-            workshop: &mut self.workshop,
         });
     }
 
@@ -240,7 +225,6 @@ struct Advance<'a> {
     blocks: &'a mut [Block<f32>],
     targets: &'a [[Row<f32>; JOINTS]],
     tallies: &'a mut [Tally<f32>],
-    workshop: &'a mut Workshop,
 }
 
 impl WithSimd for Advance<'_> {
@@ -248,18 +232,13 @@ impl WithSimd for Advance<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let room = self
-            .workshop
-            .0
-            .get_or_insert_with(|| Box::new(Room::<Packed<S>>::new(simd)))
-            .downcast_mut::<Room<Packed<S>>>()
-            .expect("robots keep the width that they began with");
+        let mut room = Room::<Packed<S>>::new(simd);
         let blocks = self.blocks.iter_mut().zip(self.targets).zip(self.tallies);
         for ((block, targets), tally) in blocks {
             *tally = Tally::default();
             for lane in (0..LANES).step_by(S::F32_LANES) {
                 for _ in 0..self.steps {
-                    step::<Packed<S>>(simd, &self.setting, targets, lane, block, tally, room);
+                    step::<Packed<S>>(simd, &self.setting, targets, lane, block, tally, &mut room);
                 }
             }
         }
