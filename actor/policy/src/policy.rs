@@ -13,7 +13,7 @@ use crate::{INPUTS, OUTPUTS, PolicyError, Shape};
 pub const CLIP: f32 = 5.0;
 
 /// Rows that go through all layers together: their activations stay in the second-level cache.
-const BLOCK: usize = 8 * TILE_ROWS;
+const BLOCK: usize = 16 * TILE_ROWS;
 
 /// A policy network with room for its intermediate results.
 #[derive(Clone, Debug)]

@@ -8,6 +8,7 @@ use crate::actuator;
 use crate::physics::Bodies;
 use crate::randomization::RandomizationConfig;
 use crate::start::{self, Starts};
+use crate::stray::Astray;
 use crate::task::{self, End, TaskConfig};
 use g1::{JOINTS, RobotState, observation};
 use rand::{RngExt, SeedableRng};
@@ -44,6 +45,7 @@ pub(crate) struct Environment {
     state: RobotState,
     command: [f32; 3],
     previous_action: [f32; JOINTS],
+    astray: Astray,
     /// Steps until a new command; none while the command is held from outside.
     command_in: Option<u32>,
     /// Steps until the next push; none without pushes.
@@ -62,6 +64,7 @@ impl Environment {
             state: RobotState::standing(),
             command: [0.0; 3],
             previous_action: [0.0; JOINTS],
+            astray: Astray::default(),
             command_in: None,
             push_in: None,
             age: 0,
@@ -88,6 +91,7 @@ impl Environment {
         self.state = bodies.begin(index, &variation, &state);
         self.command = command;
         self.previous_action = [0.0; JOINTS];
+        self.astray = Astray::default();
         self.command_in = Some(setting.task.command.draw_interval(&mut self.random));
         self.push_in = setting.randomization.draw_push_interval(&mut self.random);
         self.age = 0;
@@ -124,7 +128,12 @@ impl Environment {
             return self.broken();
         }
         self.state = bodies.state(index);
-        let end = if setting.task.has_fallen(&self.state) {
+        let strayed = setting
+            .task
+            .stray
+            .as_ref()
+            .is_some_and(|rule| self.astray.step(rule, &self.command, &self.state));
+        let end = if setting.task.has_fallen(&self.state) || strayed {
             End::Fall
         } else if self.age >= setting.task.episode_steps {
             End::Timeout
@@ -155,6 +164,7 @@ impl Environment {
             self.reset(setting, bodies, index);
         } else if count_down(&mut self.command_in) {
             self.command = setting.task.command.draw(&mut self.random);
+            self.astray = Astray::default();
             self.command_in = Some(setting.task.command.draw_interval(&mut self.random));
         }
     }
@@ -181,6 +191,7 @@ impl Environment {
     /// Holds a command until the episode ends.
     pub(crate) fn hold_command(&mut self, command: [f32; 3]) {
         self.command = command;
+        self.astray = Astray::default();
         self.command_in = None;
     }
 

@@ -14,6 +14,7 @@
 //! | commands c_t | [`command`] |
 //! | where episodes begin | [`start`] |
 //! | domain randomisation (Table I) | [`randomization`] |
+//! | straying from the command ends an episode | [`stray`] |
 //! | motors: position control, torque limits, energy (III-F) | [`actuator`] |
 //! | the two engines behind one seam | [`physics`] |
 //! | a robot in rapier, state in and out | [`world`], [`model`] |
@@ -32,6 +33,7 @@ pub mod physics;
 pub mod randomization;
 pub mod rows;
 pub mod start;
+pub mod stray;
 pub mod task;
 pub mod world;
 
@@ -46,5 +48,6 @@ pub use physics::Physics;
 pub use randomization::RandomizationConfig;
 pub use rows::StepRows;
 pub use start::{StartConfig, Starts};
+pub use stray::StrayConfig;
 pub use task::TaskConfig;
 pub use world::{Exertion, World};

@@ -8,6 +8,7 @@ use crate::config::{self, Invalid};
 use crate::curriculum::CurriculumConfig;
 use crate::physics::Physics;
 use crate::start::StartConfig;
+use crate::stray::StrayConfig;
 use g1::RobotState;
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -39,6 +40,9 @@ pub struct TaskConfig {
     pub command: CommandConfig,
     /// Where episodes begin.
     pub start: StartConfig,
+    /// When an episode ends because the robot does not do what it is told. Default: never.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stray: Option<StrayConfig>,
     /// Where some of these values go as samples come in. Default: nowhere.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub curriculum: Option<CurriculumConfig>,
@@ -56,6 +60,7 @@ impl Default for TaskConfig {
             staggered: true,
             command: CommandConfig::default(),
             start: StartConfig::default(),
+            stray: None,
             curriculum: None,
         }
     }
@@ -87,6 +92,7 @@ impl TaskConfig {
         )?;
         self.command.validate()?;
         self.start.validate()?;
+        self.stray.as_ref().map_or(Ok(()), StrayConfig::validate)?;
         self.curriculum
             .as_ref()
             .map_or(Ok(()), CurriculumConfig::validate)
@@ -123,7 +129,7 @@ pub fn upright(state: &RobotState) -> f32 {
 pub enum End {
     /// It goes on.
     Running,
-    /// A fall (or a state that could not be used).
+    /// A fall (or a state that could not be used, or straying from the command).
     Fall,
     /// The time was up.
     Timeout,

@@ -127,6 +127,8 @@ impl<'a> Walker<'a> {
         // Nobody's time is up before ours.
         task.episode_steps = conditions.steps + 1;
         task.staggered = false;
+        // A judge counts falls; disobedience shows in the velocity errors.
+        task.stray = None;
         let (starts, share) = if scenario.from_reference {
             (self.subject.starts(scenario.commands[0]), 1.0)
         } else {

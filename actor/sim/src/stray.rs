@@ -1,0 +1,114 @@
+//! Straying: going on at a velocity that was not asked for ends an episode, as a fall does.
+//!
+//! Separate because it is a rule with a memory. A discriminator rewards whatever looks human, and
+//! standing does. As long as style weighs most, a robot that stands, or strolls at one speed
+//! whatever it is told, earns nearly as much as one that obeys; and it never falls. An end after a
+//! second or two costs it the rest of the episode, whatever the weights are.
+
+use crate::config::{self, Invalid};
+use crate::world::CONTROL_STEP;
+use g1::RobotState;
+use serde::{Deserialize, Serialize};
+
+/// When a robot has strayed from its command.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct StrayConfig {
+    /// Greatest error of the mean velocity as a share of the commanded speed. Default 0.5.
+    pub share: f32,
+    /// Error that is always allowed, m/s. Default 0.25: slow commands, and standing.
+    pub least: f32,
+    /// Time over which the velocity is averaged (exponentially), s; it begins anew with every
+    /// command. Default 2: a robot that does not move strays from a walking speed after 1.4 s.
+    pub seconds: f32,
+    /// Weight of the squared error of the yaw rate (rad²/s²) beside that of the velocity (m²/s²).
+    /// Default 0.25.
+    pub yaw_rate_weight: f32,
+}
+
+impl Default for StrayConfig {
+    fn default() -> Self {
+        Self {
+            share: 0.5,
+            least: 0.25,
+            seconds: 2.0,
+            yaw_rate_weight: 0.25,
+        }
+    }
+}
+
+impl StrayConfig {
+    /// Checks every field; names the first bad one, its value and a remedy.
+    pub fn validate(&self) -> Result<(), Invalid> {
+        config::at_least("stray.share", self.share, 0.0)?;
+        config::at_least("stray.least", self.least, 0.05)?;
+        config::at_least("stray.seconds", self.seconds, 0.1)?;
+        config::at_least("stray.yaw_rate_weight", self.yaw_rate_weight, 0.0)
+    }
+
+    /// Length of a velocity or of the error of one: √(v_x² + v_y² + w·ω²), m/s.
+    fn length(&self, velocity: [f32; 3]) -> f32 {
+        let [x, y, yaw_rate] = velocity;
+        (x * x + y * y + self.yaw_rate_weight * yaw_rate * yaw_rate).sqrt()
+    }
+}
+
+/// How far the mean velocity of late is from the command: vx, vy (m/s), yaw rate (rad/s).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Astray([f32; 3]);
+
+impl Astray {
+    /// Takes one more control step in:  e ← e + (Δt/τ)·(v* − v − e). Whether the robot has strayed.
+    pub(crate) fn step(
+        &mut self,
+        rule: &StrayConfig,
+        command: &[f32; 3],
+        state: &RobotState,
+    ) -> bool {
+        let velocity = state.velocity_in_heading();
+        let moving = [velocity.x, velocity.y, state.angular_velocity.z];
+        let part = CONTROL_STEP / rule.seconds;
+        for axis in 0..3 {
+            self.0[axis] += part * (command[axis] - moving[axis] - self.0[axis]);
+        }
+        let allowed = rule.least.max(rule.share * rule.length(*command));
+        rule.length(self.0) > allowed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps until a standing robot has strayed from a command, or 1,000.
+    fn steps(rule: &StrayConfig, command: [f32; 3]) -> usize {
+        let (mut astray, state) = (Astray::default(), RobotState::standing());
+        let strayed = |_: &usize| astray.step(rule, &command, &state);
+        (1..=1_000).find(strayed).unwrap_or(1_000)
+    }
+
+    #[test]
+    fn who_stands_strays_from_walking_after_a_while() {
+        let rule = StrayConfig::default();
+        // The error of a robot at rest is v*·(1 − (1 − 0.01)ⁿ) above ½·v* when 0.99ⁿ < ½: n = 69.
+        assert_eq!(steps(&rule, [1.0, 0.0, 0.0]), 69);
+        assert_eq!(steps(&rule, [0.0, -0.6, 0.0]), 69);
+        // At 0.3 m/s ¼ m/s is allowed: 0.99ⁿ < 1/6, n = 179.
+        assert_eq!(steps(&rule, [0.3, 0.0, 0.0]), 179);
+        // Turning at 1 rad/s counts as ½ m/s, half of which is allowed.
+        assert_eq!(steps(&rule, [0.0, 0.0, 1.0]), 69);
+    }
+
+    #[test]
+    fn who_obeys_never_strays() {
+        let rule = StrayConfig::default();
+        assert_eq!(steps(&rule, [0.0; 3]), 1_000);
+        assert_eq!(steps(&rule, [0.2, 0.0, 0.0]), 1_000);
+        let mut state = RobotState::standing();
+        state.linear_velocity.x = 0.6;
+        let mut astray = Astray::default();
+        assert!((0..1_000).all(|_| !astray.step(&rule, &[1.0, 0.0, 0.0], &state)));
+        // Told to stand it has gone too far after a second.
+        assert!((0..100).any(|_| astray.step(&rule, &[0.0; 3], &state)));
+    }
+}
