@@ -5,7 +5,7 @@
 
 use crate::lane::{Lane, Real};
 use crate::tree::{POINTS, inertial};
-use g1::{BODIES, JOINTS, RobotState};
+use g1::{BODIES, JOINTS, RobotState, links::TORSO};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -90,6 +90,9 @@ impl<T: Real> Block<T> {
             friction: Row::default(),
         };
         for lane in 0..LANES {
+            for body in 0..BODIES {
+                block.set_body(lane, body, &Build::NOMINAL);
+            }
             block.set_build(lane, &Build::NOMINAL);
             block.set_state(lane, &RobotState::standing());
         }
@@ -117,19 +120,21 @@ impl<T: Real> Block<T> {
             .expect("ten numbers")
     }
 
-    /// Makes one robot of something else.
+    /// Makes one robot of something else. Only the torso varies.
     pub(crate) fn set_build(&mut self, lane: usize, build: &Build) {
-        for body in 0..BODIES {
-            let numbers = inertial(
-                body,
-                f64::from(build.torso_mass),
-                build.torso_com.map(f64::from),
-            );
-            for (i, number) in numbers.into_iter().enumerate() {
-                self.bodies[body * row::PER_BODY + i].0[lane] = T::of(number);
-            }
-        }
+        self.set_body(lane, TORSO, build);
         self.friction.0[lane] = T::of(f64::from(build.friction));
+    }
+
+    fn set_body(&mut self, lane: usize, body: usize, build: &Build) {
+        let numbers = inertial(
+            body,
+            f64::from(build.torso_mass),
+            build.torso_com.map(f64::from),
+        );
+        for (i, number) in numbers.into_iter().enumerate() {
+            self.bodies[body * row::PER_BODY + i].0[lane] = T::of(number);
+        }
     }
 
     /// Puts one robot into a state; its contacts begin anew.
@@ -162,7 +167,8 @@ impl<T: Real> Block<T> {
 
     /// The state of one robot.
     pub(crate) fn state(&self, lane: usize) -> RobotState {
-        let number = |row: usize| self.state[row].0[lane].to_f64() as f32;
+        let rows = self.rows();
+        let number = |row: usize| rows[row].0[lane].to_f64() as f32;
         let vector = |row: usize| Vector3::new(number(row), number(row + 1), number(row + 2));
         let q = row::QUATERNION;
         RobotState {
