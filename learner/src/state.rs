@@ -5,7 +5,6 @@ use std::time::Instant;
 
 use amp::{Batch, IterationReport, Learning, LearningError};
 use anyhow::{Context, Result};
-use motion::TRANSITION;
 use protocol::RewardReport;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
@@ -121,9 +120,10 @@ impl State {
         self.iteration += 1;
         self.samples += batch.rows() as u64;
         let generator = &mut self.generator;
+        let width = config.learning.discriminator.frames * amp::FEATURES;
         let mut experts = |rows: &mut [f32]| {
-            for row in rows.chunks_exact_mut(TRANSITION) {
-                config.experts.sample_transition(generator, row);
+            for row in rows.chunks_exact_mut(width) {
+                config.experts.sample_window(generator, row);
             }
         };
         let report = self

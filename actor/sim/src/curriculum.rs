@@ -19,6 +19,9 @@ pub struct CurriculumConfig {
     /// `task.kernel` at the end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kernel: Option<f32>,
+    /// `task.stray.share` at the end, where there is a `task.stray`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stray_share: Option<f32>,
     /// `task.start.reference_share` at the end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reference_share: Option<f32>,
@@ -53,6 +56,9 @@ impl CurriculumConfig {
         )?;
         if let Some(kernel) = self.kernel {
             config::at_least("curriculum.kernel", kernel, 0.0)?;
+        }
+        if let Some(share) = self.stray_share {
+            config::at_least("curriculum.stray_share", share, 0.0)?;
         }
         for (field, share) in [
             ("curriculum.reference_share", self.reference_share),
@@ -99,6 +105,9 @@ impl TaskConfig {
             }
         };
         go(&mut task.kernel, curriculum.kernel);
+        if let Some(stray) = &mut task.stray {
+            go(&mut stray.share, curriculum.stray_share);
+        }
         go(&mut task.start.reference_share, curriculum.reference_share);
         go(&mut task.command.matched_share, curriculum.matched_share);
         go(&mut task.command.standing_share, curriculum.standing_share);
@@ -118,6 +127,7 @@ impl TaskConfig {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stray::StrayConfig;
 
     #[test]
     fn values_go_in_a_straight_line_and_stay_where_they_arrive() {
@@ -127,12 +137,15 @@ mod tests {
                 from_samples: 1e6,
                 to_samples: 3e6,
                 kernel: Some(6.0),
+                stray_share: Some(0.25),
                 forward: Some([-0.4, 2.0]),
                 ..CurriculumConfig::default()
             }),
+            stray: Some(StrayConfig::default()),
             ..TaskConfig::default()
         };
         task.validate().unwrap();
+        assert_eq!(task.at(2e6).stray.unwrap().share, 0.375); // from 0.5
         assert_eq!(task.at(1e6).kernel, 2.0);
         assert_eq!(task.at(2e6).kernel, 4.0);
         assert_eq!(task.at(2e6).command.forward, [0.0, 1.6]); // from 0.4 and 1.2

@@ -1,14 +1,14 @@
 //! The judge of style: a discriminator, what it sees, and how it is trained (Eq. 3–6).
 //!
 //! It sees normalised transitions; the gradient penalty is taken where it looks, that is with respect to normalised
-//! expert transitions.
+//! expert windows.
 
+use crate::FEATURES;
 use crate::config::DiscriminatorConfig;
 use crate::error::Fault;
 use crate::inference::{self, CHUNK};
 use crate::losses;
 use crate::robot::FeatureKind;
-use crate::{FEATURES, TRANSITION};
 use networks::{
     Activation, Adam, AdamConfig, Decay, Mlp, Normalizer, Scaling, Shape, first_not_finite,
     orthogonal, shards, tensor, tracked_device, values,
@@ -58,7 +58,12 @@ impl Discriminator {
         threads: usize,
         rng: &mut (impl Rng + ?Sized),
     ) -> Self {
-        let shape = Shape::new(TRANSITION, &config.hidden, 1, Activation::Relu);
+        let shape = Shape::new(
+            config.frames * FEATURES,
+            &config.hidden,
+            1,
+            Activation::Relu,
+        );
         let weights = orthogonal(&shape, std::f32::consts::SQRT_2, 1.0, rng);
         let decay = vec![
             Decay {
@@ -90,7 +95,12 @@ impl Discriminator {
         }
     }
 
-    /// D of transitions that are normalised already, `[row][106]`; appended to `scores`.
+    /// Numbers of a window: `[frames][53]`.
+    pub fn width(&self) -> usize {
+        self.shape.inputs
+    }
+
+    /// D of windows that are normalised already, `[row][width]`; appended to `scores`.
     pub fn scores(&self, transitions: &[f32], scores: &mut Vec<f32>) {
         inference::outputs(
             &self.shape,
@@ -101,15 +111,17 @@ impl Discriminator {
         );
     }
 
-    /// The mapping of transitions: that of features, for both states.
+    /// The mapping of windows: that of features, for every state.
     pub fn scaling(&self) -> Scaling {
         let Scaling {
             mut mean,
             mut inverse,
             clip,
         } = self.normalizer.scaling();
-        mean.extend_from_within(..FEATURES);
-        inverse.extend_from_within(..FEATURES);
+        for _ in 1..self.config.frames {
+            mean.extend_from_within(..FEATURES);
+            inverse.extend_from_within(..FEATURES);
+        }
         Scaling {
             mean,
             inverse,
@@ -117,17 +129,17 @@ impl Discriminator {
         }
     }
 
-    /// Takes transitions `[row][106]`, not normalised, into the statistics: both states of each.
+    /// Takes windows `[row][width]`, not normalised, into the statistics: every state of each.
     pub fn observe(&mut self, transitions: &[f32]) {
         self.normalizer.update(transitions);
     }
 
-    /// Trains on as many steps as `experts` and `policy` have batches; both normalised, `[row][106]`.
+    /// Trains on as many steps as `experts` and `policy` have batches; both normalised, `[row][width]`.
     ///
     /// # Errors
     /// If a loss, a gradient or a weight is not finite. The weights are then spoilt: the caller holds the good ones.
     pub fn update(&mut self, experts: &[f32], policy: &[f32]) -> Result<Figures, Fault> {
-        let batch = self.config.batch * TRANSITION;
+        let batch = self.config.batch * self.width();
         let mut figures = Figures::default();
         let steps = experts.len() / batch;
         for (experts, policy) in experts.chunks_exact(batch).zip(policy.chunks_exact(batch)) {
@@ -145,7 +157,7 @@ impl Discriminator {
 
     /// One step of the optimizer on as many experts as policy transitions.
     fn step(&mut self, experts: &[f32], policy: &[f32]) -> Result<Figures, Fault> {
-        let count = experts.len() / TRANSITION;
+        let count = experts.len() / self.width();
         let threads = self.threads.min(count);
         let this = &*self;
         let mut states = vec![(); threads];
@@ -191,15 +203,16 @@ impl Discriminator {
     fn differentiate(&self, experts: &[f32], policy: &[f32], part: Range<usize>) -> Sums {
         let device = tracked_device();
         let network = Mlp::new(&self.shape, &self.weights, &device).expect("weights of this shape");
-        let count = experts.len() / TRANSITION;
+        let count = experts.len() / self.width();
         let mut sums = Sums {
             gradient: vec![0.0; self.weights.len()],
             ..Sums::default()
         };
+        let width = self.width();
         let total = |scores: Vec<f32>| scores.iter().map(|d| f64::from(*d)).sum::<f64>();
         for piece in shards::pieces(part, CHUNK) {
-            let numbers = piece.start * TRANSITION..piece.end * TRANSITION;
-            let rows = |from: &[f32]| tensor(from[numbers.clone()].to_vec(), TRANSITION, &device);
+            let numbers = piece.start * width..piece.end * width;
+            let rows = |from: &[f32]| tensor(from[numbers.clone()].to_vec(), width, &device);
             let expert = network.forward_all(rows(experts));
             let policy_scores = network.forward(rows(policy));
             let penalty = losses::gradient_penalty(network.input_gradient(&expert.hidden), count);

@@ -11,7 +11,7 @@ use crate::replay::Replay;
 use crate::report::{IterationReport, Seconds, moments};
 use crate::robot::Robot;
 use crate::style::style_reward;
-use crate::{LearningError, OBSERVATION, blend, exploration};
+use crate::{FEATURES, LearningError, OBSERVATION, blend, exploration};
 use ampco::{Granularity, Rule};
 use networks::{Normalizer, snapshot};
 use rand::SeedableRng;
@@ -75,7 +75,10 @@ impl Learning {
                 iteration: 0,
                 samples: 0,
             },
-            replay: Replay::new(config.discriminator.replay_capacity),
+            replay: Replay::new(
+                config.discriminator.replay_capacity,
+                config.discriminator.frames * FEATURES,
+            ),
             clock: || 0.0,
             config,
             robot,
@@ -119,19 +122,19 @@ impl Learning {
         &self.flat
     }
 
-    /// rˢ (Eq. 7) of transitions `[row][106]` as of now; appended to `rewards`.
-    pub fn style_rewards(&mut self, transitions: &[f32], rewards: &mut Vec<f32>) {
+    /// rˢ (Eq. 7) of windows `[row][frames][53]` as of now; appended to `rewards`.
+    pub fn style_rewards(&mut self, windows: &[f32], rewards: &mut Vec<f32>) {
         let Scratch { scaled, scores, .. } = &mut self.scratch;
         scaled.clear();
         scores.clear();
-        self.core.discriminator.scaling().apply(transitions, scaled);
+        self.core.discriminator.scaling().apply(windows, scaled);
         self.core.discriminator.scores(scaled, scores);
         rewards.extend(scores.iter().map(|score| style_reward(*score)));
     }
 
     /// One iteration: score, blend, estimate advantages, improve the policy, train the discriminator.
     ///
-    /// `experts` fills its slice with expert transitions, `[n][106]`; it is called once. Statistics of observations stay
+    /// `experts` fills its slice with windows of reference motion, `[n][frames][53]`; it is called once. Statistics of observations stay
     /// as the actors had them and take the batch in at the end, for the next policy.
     ///
     /// # Errors

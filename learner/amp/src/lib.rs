@@ -43,6 +43,7 @@ pub mod robot;
 mod saved;
 pub mod style;
 pub mod surrogate;
+pub mod window;
 
 pub use batch::{Batch, Segment, SegmentMut};
 pub use config::{
@@ -59,5 +60,3 @@ pub const OBSERVATION: usize = 82;
 pub const ACTION: usize = 23;
 /// Numbers that the discriminator sees of one state (III-A).
 pub const FEATURES: usize = 53;
-/// Numbers of a transition (o_t, o_{t+1}).
-pub const TRANSITION: usize = 2 * FEATURES;

@@ -7,7 +7,7 @@ use burn::tensor::Tensor;
 
 /// L_expert = E over experts of (D(o_t, o_{t+1}) − 1)²   (Eq. 3)
 ///
-/// `scores` `[n, 1]`, a part of `count` expert transitions.
+/// `scores` `[n, 1]`, a part of `count` expert windows.
 pub fn expert_loss(scores: Tensor<2>, count: usize) -> Tensor<1> {
     (scores - 1.0).square().sum() / count as f32
 }
@@ -22,7 +22,7 @@ pub fn policy_loss(scores: Tensor<2>, count: usize) -> Tensor<1> {
 /// L_GP = E over experts of ‖∇D(o_t, o_{t+1})‖²   (Eq. 5)
 ///
 /// `input_gradients` `[n, 106]`, with respect to what the discriminator sees, that is to normalised observations; a part
-/// of `count` expert transitions.
+/// of `count` expert windows.
 pub fn gradient_penalty(input_gradients: Tensor<2>, count: usize) -> Tensor<1> {
     input_gradients.square().sum() / count as f32
 }

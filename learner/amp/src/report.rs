@@ -57,7 +57,7 @@ pub struct IterationReport {
     /// 1 − Var(R − V)/Var(R): how much of the returns the critic foresaw.
     pub explained_variance: f64,
 
-    /// Mean D of expert transitions over the discriminator's steps.
+    /// Mean D of expert windows over the discriminator's steps.
     pub expert_score: f64,
     /// Mean D of policy transitions.
     pub policy_score: f64,

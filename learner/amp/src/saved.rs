@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Changes when the content does.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 #[derive(Serialize, Deserialize)]
 struct Saved {
@@ -77,7 +77,7 @@ impl Learning {
         if used != bytes.len() {
             return Err(refuse(format!("{} bytes too many", bytes.len() - used)));
         }
-        if !saved.replay.is_sound() {
+        if !saved.replay.is_sound(self.replay.width()) {
             return Err(refuse(
                 "the remembered transitions contradict themselves".to_owned(),
             ));

@@ -14,9 +14,6 @@ use rand::{Rng, RngExt};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// Numbers in a transition: the features of two successive steps.
-pub const TRANSITION: usize = 2 * FEATURES;
-
 /// Clips with what is needed to draw from them.
 ///
 /// A clip is drawn in proportion to its weight, whatever its length; then any of its frames alike.
@@ -124,13 +121,18 @@ impl Dataset {
             })
     }
 
-    /// Draws a transition: the features of a step and of the next, 53 and 53 numbers. In a cyclic
-    /// clip the first frame follows the last. Allocates nothing.
+    /// Draws a window of motion: the features of successive steps, oldest first, 53 numbers each; every
+    /// transition is equally often its end. In a cyclic clip the first frame follows the last; before
+    /// the first frame of another clip there is nothing but that frame. Allocates nothing.
     ///
     /// # Panics
-    /// If `out` is not 106 long.
-    pub fn sample_transition(&self, rng: &mut impl Rng, out: &mut [f32]) {
-        assert_eq!(out.len(), TRANSITION, "a transition has 106 numbers");
+    /// If `out` is not as long as two steps or more.
+    pub fn sample_window(&self, rng: &mut impl Rng, out: &mut [f32]) {
+        let steps = out.len() / FEATURES;
+        assert!(
+            steps >= 2 && out.len().is_multiple_of(FEATURES),
+            "a window has 53 numbers for each of two steps or more"
+        );
         let (index, i) = match &self.strata {
             Some(strata) => strata.draw(rng),
             None => {
@@ -139,13 +141,19 @@ impl Dataset {
             }
         };
         let clip = &self.clips[index];
-        let next = (i + 1) % clip.frames.len();
-        let row = |i: usize| {
-            let at = (self.starts[index] + i) * FEATURES;
-            &self.features[at..at + FEATURES]
-        };
-        out[..FEATURES].copy_from_slice(row(i));
-        out[FEATURES..].copy_from_slice(row(next));
+        let length = clip.frames.len();
+        for (place, state) in out.chunks_exact_mut(FEATURES).enumerate() {
+            // Steps from the window's last but one, which is frame i.
+            let ahead = place as isize - (steps as isize - 2);
+            let frame = i as isize + ahead;
+            let frame = if clip.cyclic {
+                frame.rem_euclid(length as isize)
+            } else {
+                frame.max(0)
+            };
+            let at = (self.starts[index] + frame as usize) * FEATURES;
+            state.copy_from_slice(&self.features[at..at + FEATURES]);
+        }
     }
 
     /// Draws a frame with its clip's command, to start an episode from.
@@ -289,14 +297,31 @@ mod tests {
         ]);
         assert_eq!(data.transitions(), 3 + 2);
         let mut rng = Pcg64Mcg::seed_from_u64(7);
-        let (mut out, mut seen) = ([0.0; TRANSITION], Vec::new());
+        let (mut out, mut seen) = ([0.0; 2 * FEATURES], Vec::new());
         for _ in 0..200 {
-            data.sample_transition(&mut rng, &mut out);
+            data.sample_window(&mut rng, &mut out);
             seen.push((out[0] as i32, out[FEATURES] as i32));
         }
         seen.sort_unstable();
         seen.dedup();
         assert_eq!(seen, [(0, 1), (1, 2), (2, 0), (10, 11), (11, 12)]);
+
+        // Four steps: back beyond the beginning, where only a cycle goes on.
+        let (mut out, mut seen) = ([0.0; 4 * FEATURES], Vec::new());
+        for _ in 0..200 {
+            data.sample_window(&mut rng, &mut out);
+            seen.push([0, 1, 2, 3].map(|step| out[step * FEATURES] as i32));
+        }
+        seen.sort_unstable();
+        seen.dedup();
+        let expected = [
+            [0, 1, 2, 0],
+            [1, 2, 0, 1],
+            [2, 0, 1, 2],
+            [10, 10, 10, 11],
+            [10, 10, 11, 12],
+        ];
+        assert_eq!(seen, expected);
     }
 
     #[test]
@@ -382,10 +407,10 @@ mod tests {
         let data = Dataset::of(vec![gait::stand(), gait::walk(1.0).unwrap()]);
         let draw = || {
             let mut rng = Pcg64Mcg::seed_from_u64(3);
-            let mut out = [0.0; TRANSITION];
+            let mut out = [0.0; 2 * FEATURES];
             (0..10)
                 .map(|_| {
-                    data.sample_transition(&mut rng, &mut out);
+                    data.sample_window(&mut rng, &mut out);
                     out
                 })
                 .collect::<Vec<_>>()

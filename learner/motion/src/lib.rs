@@ -18,6 +18,6 @@ pub mod strata;
 
 pub use clip::{Clip, FRAME_SECONDS};
 pub use config::{ClipConfig, Gait, MotionConfig, QuaternionOrder};
-pub use dataset::{Dataset, TRANSITION};
+pub use dataset::Dataset;
 pub use error::MotionError;
 pub use quality::Quality;

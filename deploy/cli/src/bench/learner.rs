@@ -6,11 +6,11 @@
 
 use std::time::Instant;
 
+use amp::OBSERVATION;
 use amp::batch::TIME_OUT;
 use amp::discrimination::Discriminator;
 use amp::ppo::{Ppo, Rows};
 use amp::{ACTION, Batch, FeatureKind, JointGroup, Learning, LearningConfig, Mirror, Robot};
-use amp::{OBSERVATION, TRANSITION};
 use ampco::{Granularity, Rule};
 use anyhow::{Result, ensure};
 use clap::Args;
@@ -117,8 +117,8 @@ impl LearnerBench {
         let threads = config.ppo.threads;
         let mut judge =
             Discriminator::new(&config.discriminator, &robot.features, threads, &mut rng);
-        let experts = noise(batch * TRANSITION, &mut rng);
-        let policy = noise(batch * TRANSITION, &mut rng);
+        let experts = noise(batch * judge.width(), &mut rng);
+        let policy = noise(batch * judge.width(), &mut rng);
         self.median_ms(|| {
             judge
                 .update(&experts, &policy)

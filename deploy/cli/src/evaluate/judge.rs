@@ -6,12 +6,16 @@ use g1::FEATURES;
 
 use super::subject::Kept;
 
-/// Transitions that are scored together: a call of the network costs more than a few rows.
+/// Windows of motion that are scored together: a call of the network costs more than a few rows.
 const TOGETHER: usize = 1_024;
 
-/// A discriminator with memory for transitions that wait to be scored.
+/// A discriminator with memory for what it has seen and for windows that wait to be scored.
 pub(super) struct Judge {
     learning: Learning,
+    /// States that a window has.
+    frames: usize,
+    /// The last states of each robot but the newest, `[robot][frames − 1][53]`.
+    seen: Vec<f32>,
     waiting: Vec<f32>,
     rewards: Vec<f32>,
     sum: f64,
@@ -21,6 +25,7 @@ impl Judge {
     /// The discriminator of a checkpoint.
     pub(super) fn of(kept: &Kept) -> Result<Self> {
         let mut config = kept.learning.clone();
+        let frames = config.discriminator.frames;
         // Episodes are spread over threads already.
         config.ppo.threads = 1;
         // The seed is of weights that are replaced at once.
@@ -31,17 +36,33 @@ impl Judge {
             .with_context(|| format!("loading learning.bin of {}", kept.path.display()))?;
         Ok(Self {
             learning,
+            frames,
+            seen: Vec::new(),
             waiting: Vec::new(),
             rewards: Vec::new(),
             sum: 0.0,
         })
     }
 
-    /// Takes one step of one robot: the features (53) before and after it.
-    pub(super) fn take(&mut self, before: &[f32], after: &[f32]) {
-        self.waiting.extend_from_slice(before);
+    /// Takes one step of one robot: the features (53) before and after it. Before the first step of an
+    /// episode nothing is known, so its first state stands for those before, as in training.
+    pub(super) fn take(&mut self, robot: usize, first: bool, before: &[f32], after: &[f32]) {
+        let size = (self.frames - 1) * FEATURES;
+        if self.seen.len() < (robot + 1) * size {
+            self.seen.resize((robot + 1) * size, 0.0);
+        }
+        let seen = &mut self.seen[robot * size..][..size];
+        if first {
+            for state in seen.chunks_exact_mut(FEATURES) {
+                state.copy_from_slice(before);
+            }
+        } else {
+            seen.copy_within(FEATURES.., 0);
+            seen[size - FEATURES..].copy_from_slice(before);
+        }
+        self.waiting.extend_from_slice(seen);
         self.waiting.extend_from_slice(after);
-        if self.waiting.len() >= TOGETHER * 2 * FEATURES {
+        if self.waiting.len() >= TOGETHER * self.frames * FEATURES {
             self.score();
         }
     }

@@ -7,11 +7,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DiscriminatorConfig {
+    /// Successive states that it looks at. The paper's pair; longer windows show rhythm (see [`crate::window`]).
+    pub frames: usize,
     /// Widths of hidden layers (ReLU). The recipe's; published trainers use 1024-512.
     pub hidden: Vec<usize>,
     /// Steps per iteration. The recipe's.
     pub steps: usize,
-    /// Expert transitions per step, and as many of the policy. The recipe's.
+    /// Expert windows per step, and as many of the policy. The recipe's.
     pub batch: usize,
     /// AdamW's rate. The recipe's.
     pub learning_rate: f32,
@@ -21,11 +23,11 @@ pub struct DiscriminatorConfig {
     pub head_decay: f32,
     /// λ_GP of Eq. 6, on normalised observations. The recipe's; published least-squares trainers use 10.
     pub gradient_penalty: f32,
-    /// Past policy transitions that are remembered.
+    /// Past policy windows that are remembered.
     pub replay_capacity: usize,
-    /// New transitions remembered per iteration: capacity and this make a memory of about 50 iterations.
+    /// New windows remembered per iteration: capacity and this make a memory of about 50 iterations.
     pub replay_insert: usize,
-    /// Share of a step's policy transitions that is taken from memory. The recipe's half.
+    /// Share of a step's policy windows that is taken from memory. The recipe's half.
     pub replay_share: f32,
     /// Normalised features are clipped to ± this.
     pub feature_clip: f32,
@@ -53,6 +55,7 @@ pub struct Floors {
 impl Default for DiscriminatorConfig {
     fn default() -> Self {
         Self {
+            frames: 2,
             hidden: vec![256, 128],
             steps: 3,
             batch: 1024,
@@ -86,6 +89,12 @@ impl DiscriminatorConfig {
     pub fn validate(&self) -> Result<(), ConfigError> {
         Check(Ok(()))
             .layers("hidden", &self.hidden)
+            .that(
+                (2..=32).contains(&self.frames),
+                "frames",
+                self.frames,
+                "use 2, the paper's pair, to 32",
+            )
             .count("steps", self.steps, 1000)
             .count("batch", self.batch, 1 << 20)
             .positive("learning_rate", self.learning_rate)

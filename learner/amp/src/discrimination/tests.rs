@@ -28,7 +28,7 @@ fn small() -> DiscriminatorConfig {
 }
 
 fn gaussian(rows: usize, mean: f32, rng: &mut Pcg64) -> Vec<f32> {
-    (0..rows * TRANSITION)
+    (0..rows * (2 * FEATURES))
         .map(|_| mean + 0.5 * Distribution::<f32>::sample(&StandardNormal, rng))
         .collect()
 }
@@ -103,7 +103,7 @@ fn features_are_scaled_alike_in_both_states() {
     let mut rng = Pcg64::seed_from_u64(5);
     judge.observe(&gaussian(100, 2.0, &mut rng));
     let scaling = judge.scaling();
-    assert_eq!(scaling.mean.len(), TRANSITION);
+    assert_eq!(scaling.mean.len(), (2 * FEATURES));
     assert_eq!(scaling.mean[..FEATURES], scaling.mean[FEATURES..]);
     assert_eq!(scaling.inverse[..FEATURES], scaling.inverse[FEATURES..]);
     assert!((scaling.mean[0] - 2.0).abs() < 0.2);

@@ -10,15 +10,16 @@ use crate::gae::{self, Returns};
 use crate::ppo::{PpoFigures, Rows};
 use crate::report::moments;
 use crate::style::style_reward;
-use crate::{FEATURES, OBSERVATION, TRANSITION, inference};
-use networks::Scaling;
+use crate::window::{Past, repeat_oldest};
+use crate::{OBSERVATION, inference};
 use rand::RngExt;
 
 /// Arrays over the rows of an iteration, kept between iterations.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
-    /// Transitions as the discriminator sees them, `[row][106]`.
-    pub(super) transitions: Vec<f32>,
+    /// Windows as the discriminator sees them, `[row][frames][53]`.
+    pub(super) windows: Vec<f32>,
+    pub(super) past: Past,
     pub(super) scores: Vec<f32>,
     pub(super) style_rewards: Vec<f32>,
     pub(super) rewards: Vec<f32>,
@@ -44,15 +45,24 @@ impl Learning {
     /// Style rewards of the batch, by the discriminator as it was when the batch was collected.
     pub(super) fn score(&mut self, batch: &Batch) -> Result<(), Fault> {
         let Scratch {
-            transitions,
+            windows,
+            past,
             scores,
             style_rewards,
             ..
         } = &mut self.scratch;
         let scaling = self.core.discriminator.scaling();
-        interleave(&batch.features, &batch.next_features, &scaling, transitions);
+        past.of(batch);
+        windows.clear();
+        let frames = self.config.discriminator.frames;
+        let mut window = Vec::with_capacity(self.core.discriminator.width());
+        for row in 0..batch.rows() {
+            window.clear();
+            past.write(batch, row, frames, &mut window);
+            scaling.apply(&window, windows);
+        }
         scores.clear();
-        self.core.discriminator.scores(transitions, scores);
+        self.core.discriminator.scores(windows, scores);
         if let Some(i) = networks::first_not_finite(scores) {
             return Err(Fault::new(
                 format!("discriminator score of row {i}"),
@@ -177,7 +187,7 @@ impl Learning {
         self.core.ppo.update(&rows, sigma, &mut self.core.generator)
     }
 
-    /// Trains the discriminator on experts, transitions of this batch and remembered ones.
+    /// Trains the discriminator on experts, windows of this batch and remembered ones.
     pub(super) fn discriminate(
         &mut self,
         batch: &Batch,
@@ -186,6 +196,7 @@ impl Learning {
         let config = &self.config.discriminator;
         let Scratch {
             experts: expert,
+            past,
             policy,
             scaled,
             scaled_policy,
@@ -194,13 +205,20 @@ impl Learning {
         let core = &mut self.core;
         let count = config.steps * config.batch;
         expert.clear();
-        expert.resize(count * TRANSITION, 0.0);
+        let width = core.discriminator.width();
+        expert.resize(count * width, 0.0);
         experts(expert);
         if let Some(i) = networks::first_not_finite(expert) {
             return Err(Fault::new(
-                format!("expert transition {}", i / TRANSITION),
+                format!("expert window {}", i / width),
                 expert[i],
             ));
+        }
+        if config.frames > 2 {
+            for window in expert.chunks_exact_mut(width) {
+                let row = core.generator.random_range(0..batch.rows());
+                repeat_oldest(window, past.real(row, config.frames));
+            }
         }
         policy.clear();
         for i in 0..count {
@@ -209,8 +227,7 @@ impl Learning {
                 policy.extend_from_slice(self.replay.draw(&mut core.generator));
             } else {
                 let row = core.generator.random_range(0..batch.rows());
-                policy.extend_from_slice(&batch.features[row * FEATURES..][..FEATURES]);
-                policy.extend_from_slice(&batch.next_features[row * FEATURES..][..FEATURES]);
+                past.write(batch, row, config.frames, policy);
             }
         }
         core.discriminator.observe(expert);
@@ -230,29 +247,15 @@ impl Learning {
         // A mirrored robot's observations are as likely: statistics of both keep the two sides alike.
         core.observations.update(&self.scratch.mirrored);
         let rows = batch.rows();
+        let mut window = Vec::with_capacity(core.discriminator.width());
         for _ in 0..self.config.discriminator.replay_insert.min(rows) {
             let row = core.generator.random_range(0..rows);
-            let mut transition = [0.0; TRANSITION];
-            transition[..FEATURES].copy_from_slice(&batch.features[row * FEATURES..][..FEATURES]);
-            transition[FEATURES..]
-                .copy_from_slice(&batch.next_features[row * FEATURES..][..FEATURES]);
-            self.replay.insert(&transition);
+            window.clear();
+            let frames = self.config.discriminator.frames;
+            self.scratch.past.write(batch, row, frames, &mut window);
+            self.replay.insert(&window);
         }
         core.iteration += 1;
         core.samples += rows as u64;
-    }
-}
-
-/// (o_t, o_{t+1}) side by side and normalised, `[row][106]`.
-fn interleave(features: &[f32], next_features: &[f32], scaling: &Scaling, out: &mut Vec<f32>) {
-    out.clear();
-    let pairs = features
-        .chunks_exact(FEATURES)
-        .zip(next_features.chunks_exact(FEATURES));
-    let mut pair = [0.0; TRANSITION];
-    for (now, next) in pairs {
-        pair[..FEATURES].copy_from_slice(now);
-        pair[FEATURES..].copy_from_slice(next);
-        scaling.apply(&pair, out);
     }
 }

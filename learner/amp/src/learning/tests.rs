@@ -148,7 +148,7 @@ fn a_bad_batch_or_a_failed_update_changes_nothing() {
     assert_eq!(
         error.expect_err("infinite experts"),
         LearningError::NotFinite {
-            what: "expert transition 0".to_owned(),
+            what: "expert window 0".to_owned(),
             value: f64::INFINITY,
             iteration: 2
         }

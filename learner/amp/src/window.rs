@@ -1,0 +1,134 @@
+//! What the discriminator looks at: the paper's pair of successive states, or a longer window of motion.
+//!
+//! Separate because rows, memory and reference motion must be cut alike. A pair shows a pose and how fast it changes,
+//! not a rhythm; other trainers show 4 to 10 states. A row whose episode or rollout began only just now has no longer
+//! past: the oldest state stands for those before it. Experts are then cut as short as rows of the batch are, or the
+//! cut itself would tell the two apart.
+
+use crate::FEATURES;
+use crate::batch::Batch;
+
+/// No row before.
+const NONE: u32 = u32::MAX;
+
+/// For each row of a batch the row of the same robot a step before, if that is in the same rollout and episode.
+#[derive(Debug, Default)]
+pub(crate) struct Past {
+    before: Vec<u32>,
+}
+
+impl Past {
+    /// Reads a batch.
+    pub(crate) fn of(&mut self, batch: &Batch) {
+        self.before.clear();
+        let mut first = 0;
+        for segment in batch.segments() {
+            let robots = segment.environments;
+            for row in first..first + segment.rows() {
+                let here = row >= first + robots && batch.episode_steps[row] > 1.0;
+                self.before
+                    .push(if here { (row - robots) as u32 } else { NONE });
+            }
+            first += segment.rows();
+        }
+    }
+
+    /// States of a row's window that there are, its next state included: from 2 to `frames`.
+    pub(crate) fn real(&self, row: usize, frames: usize) -> usize {
+        let mut row = row as u32;
+        for real in 2..frames {
+            row = self.before[row as usize];
+            if row == NONE {
+                return real;
+            }
+        }
+        frames
+    }
+
+    /// Appends a row's window `[frames][53]`, oldest state first.
+    pub(crate) fn write(&self, batch: &Batch, row: usize, frames: usize, out: &mut Vec<f32>) {
+        let start = out.len();
+        out.resize(start + frames * FEATURES, 0.0);
+        let window = &mut out[start..];
+        window[(frames - 1) * FEATURES..]
+            .copy_from_slice(&batch.next_features[row * FEATURES..][..FEATURES]);
+        let mut row = row;
+        for place in (0..frames - 1).rev() {
+            window[place * FEATURES..][..FEATURES]
+                .copy_from_slice(&batch.features[row * FEATURES..][..FEATURES]);
+            if self.before[row] != NONE {
+                row = self.before[row] as usize;
+            } else {
+                repeat_oldest(window, frames - place);
+                break;
+            }
+        }
+    }
+}
+
+/// Lets the oldest of the last `real` states of a window stand for all before it.
+pub fn repeat_oldest(window: &mut [f32], real: usize) {
+    let first = window.len() - real * FEATURES;
+    let (older, rest) = window.split_at_mut(first);
+    for state in older.chunks_exact_mut(FEATURES) {
+        state.copy_from_slice(&rest[..FEATURES]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One rollout of 4 steps by 2 robots; features of step t of robot r are 10·r + t. Robot 1 begins anew at step 2.
+    fn batch() -> Batch {
+        let mut batch = Batch::default();
+        batch.resize(1, 4, 2);
+        for row in 0..8 {
+            let (step, robot) = (row / 2, row % 2);
+            let number = (10 * robot + step) as f32;
+            batch.features[row * FEATURES..][..FEATURES].fill(number);
+            batch.next_features[row * FEATURES..][..FEATURES].fill(number + 1.0);
+            batch.episode_steps[row] = if robot == 1 && step >= 2 {
+                step - 1
+            } else {
+                step + 5
+            } as f32;
+        }
+        batch
+    }
+
+    fn window(row: usize, frames: usize) -> Vec<f32> {
+        let batch = batch();
+        let (mut past, mut out) = (Past::default(), vec![]);
+        past.of(&batch);
+        past.write(&batch, row, frames, &mut out);
+        assert_eq!(out.len(), frames * FEATURES);
+        out.chunks(FEATURES).map(|state| state[7]).collect()
+    }
+
+    #[test]
+    fn a_window_of_two_is_the_pair_of_the_row() {
+        assert_eq!(window(4, 2), [2.0, 3.0]);
+        assert_eq!(window(1, 2), [10.0, 11.0]);
+    }
+
+    #[test]
+    fn longer_windows_reach_back_within_rollout_and_episode() {
+        assert_eq!(window(6, 4), [1.0, 2.0, 3.0, 4.0]);
+        assert_eq!(window(6, 5), [0.0, 1.0, 2.0, 3.0, 4.0]);
+        // Before the rollout's first step nothing is known.
+        assert_eq!(window(2, 5), [0.0, 0.0, 0.0, 1.0, 2.0]);
+        // Robot 1 began anew at its third step: row 5 is its first, row 7 its second.
+        assert_eq!(window(5, 4), [12.0, 12.0, 12.0, 13.0]);
+        assert_eq!(window(7, 4), [12.0, 12.0, 13.0, 14.0]);
+    }
+
+    #[test]
+    fn what_is_real_is_counted() {
+        let mut past = Past::default();
+        past.of(&batch());
+        let real = |row| past.real(row, 4);
+        assert_eq!([real(6), real(2), real(0)], [4, 3, 2]);
+        assert_eq!([real(5), real(7), past.real(6, 2)], [2, 3, 2]);
+    }
+}
