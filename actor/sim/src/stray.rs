@@ -18,9 +18,11 @@ pub struct StrayConfig {
     pub share: f32,
     /// Error that is always allowed, m/s. Default 0.25: slow commands, and standing.
     pub least: f32,
-    /// Time over which the velocity is averaged (exponentially), s; it begins anew with every
-    /// command. Default 2: a robot that does not move strays from a walking speed after 1.4 s.
+    /// Time over which the velocity is averaged (exponentially), s. Default 2.
     pub seconds: f32,
+    /// Time after a start or a new command in which nothing is counted, s. Default 0.3. With 1
+    /// standing paid again: a discount of 0.99 looks two seconds ahead, about as long as it then lasted.
+    pub grace: f32,
     /// Weight of the squared error of the yaw rate (rad²/s²) beside that of the velocity (m²/s²).
     /// Default 0.25.
     pub yaw_rate_weight: f32,
@@ -32,6 +34,7 @@ impl Default for StrayConfig {
             share: 0.5,
             least: 0.25,
             seconds: 2.0,
+            grace: 0.3,
             yaw_rate_weight: 0.25,
         }
     }
@@ -43,6 +46,7 @@ impl StrayConfig {
         config::at_least("stray.share", self.share, 0.0)?;
         config::at_least("stray.least", self.least, 0.05)?;
         config::at_least("stray.seconds", self.seconds, 0.1)?;
+        config::at_least("stray.grace", self.grace, 0.0)?;
         config::at_least("stray.yaw_rate_weight", self.yaw_rate_weight, 0.0)
     }
 
@@ -53,26 +57,36 @@ impl StrayConfig {
     }
 }
 
-/// How far the mean velocity of late is from the command: vx, vy (m/s), yaw rate (rad/s).
+/// What is remembered of a robot since its command was given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Astray([f32; 3]);
+pub(crate) struct Astray {
+    /// How far the mean velocity is from the command: vx, vy (m/s), yaw rate (rad/s).
+    error: [f32; 3],
+    /// Control steps since the command.
+    steps: u32,
+}
 
 impl Astray {
-    /// Takes one more control step in:  e ← e + (Δt/τ)·(v* − v − e). Whether the robot has strayed.
+    /// Takes one more control step in:  e ← e + (Δt/τ)·(v* − v − e), after the grace. Whether the robot
+    /// has strayed.
     pub(crate) fn step(
         &mut self,
         rule: &StrayConfig,
         command: &[f32; 3],
         state: &RobotState,
     ) -> bool {
+        self.steps += 1;
+        if self.steps as f32 * CONTROL_STEP <= rule.grace {
+            return false;
+        }
         let velocity = state.velocity_in_heading();
         let moving = [velocity.x, velocity.y, state.angular_velocity.z];
         let part = CONTROL_STEP / rule.seconds;
         for axis in 0..3 {
-            self.0[axis] += part * (command[axis] - moving[axis] - self.0[axis]);
+            self.error[axis] += part * (command[axis] - moving[axis] - self.error[axis]);
         }
         let allowed = rule.least.max(rule.share * rule.length(*command));
-        rule.length(self.0) > allowed
+        rule.length(self.error) > allowed
     }
 }
 
@@ -90,13 +104,14 @@ mod tests {
     #[test]
     fn who_stands_strays_from_walking_after_a_while() {
         let rule = StrayConfig::default();
-        // The error of a robot at rest is v*·(1 − (1 − 0.01)ⁿ) above ½·v* when 0.99ⁿ < ½: n = 69.
-        assert_eq!(steps(&rule, [1.0, 0.0, 0.0]), 69);
-        assert_eq!(steps(&rule, [0.0, -0.6, 0.0]), 69);
+        // After a grace of 15 steps the error of a robot at rest is v*·(1 − (1 − 0.01)ⁿ), above ½·v* when
+        // 0.99ⁿ < ½: n = 69.
+        assert_eq!(steps(&rule, [1.0, 0.0, 0.0]), 84);
+        assert_eq!(steps(&rule, [0.0, -0.6, 0.0]), 84);
         // At 0.3 m/s ¼ m/s is allowed: 0.99ⁿ < 1/6, n = 179.
-        assert_eq!(steps(&rule, [0.3, 0.0, 0.0]), 179);
+        assert_eq!(steps(&rule, [0.3, 0.0, 0.0]), 194);
         // Turning at 1 rad/s counts as ½ m/s, half of which is allowed.
-        assert_eq!(steps(&rule, [0.0, 0.0, 1.0]), 69);
+        assert_eq!(steps(&rule, [0.0, 0.0, 1.0]), 84);
     }
 
     #[test]
@@ -108,7 +123,7 @@ mod tests {
         state.linear_velocity.x = 0.6;
         let mut astray = Astray::default();
         assert!((0..1_000).all(|_| !astray.step(&rule, &[1.0, 0.0, 0.0], &state)));
-        // Told to stand it has gone too far after a second.
-        assert!((0..100).any(|_| astray.step(&rule, &[0.0; 3], &state)));
+        // Told to stand it has gone too far a second after the grace.
+        assert!((0..150).any(|_| astray.step(&rule, &[0.0; 3], &state)));
     }
 }
