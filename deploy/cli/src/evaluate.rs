@@ -4,7 +4,7 @@
 //! threads; the seed alone decides the result.
 
 mod episodes;
-mod judge;
+pub(crate) mod judge;
 mod pictures;
 mod reference;
 mod report;

@@ -1,5 +1,7 @@
 //! `ampco export`: a trained policy for other programs, and the robot for MuJoCo.
 
+mod ship;
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -30,6 +32,10 @@ pub(crate) struct Export {
     /// Folder to write to; made if it is not there
     #[arg(long, value_name = "DIR", required_unless_present = "mjcf")]
     out: Option<PathBuf>,
+    /// Write instead a folder that `evaluate`, `play` and `export` take like a run, half a megabyte: the
+    /// policy, the discriminator that judges its style, and its configuration
+    #[arg(long, requires = "run")]
+    ship: bool,
     /// Write the robot alone, to DIR/g1.xml or to standard output
     #[arg(long, conflicts_with = "run")]
     mjcf: bool,
@@ -44,6 +50,9 @@ impl Export {
                 return Ok(());
             }
             (None, Some(folder)) => write_all(folder, &[(MODEL, model().into_bytes())])?,
+            (Some(run), Some(folder)) if self.ship => {
+                ship::write(&Kept::open(&self.place, run)?, folder)?
+            }
             (Some(run), Some(folder)) => {
                 write_all(folder, &files(&Kept::open(&self.place, run)?)?)?
             }

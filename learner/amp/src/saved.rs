@@ -26,6 +26,14 @@ struct Saved {
     generator: Pcg64,
 }
 
+/// The discriminator alone: what judges style, and no more.
+#[derive(Serialize, Deserialize)]
+struct SavedJudge {
+    format: u32,
+    discriminator: Vec<Tensor>,
+    features: NormalizerState,
+}
+
 #[derive(Serialize, Deserialize)]
 struct Tensor {
     name: String,
@@ -102,6 +110,44 @@ impl Learning {
         core.samples = saved.samples;
         self.core = core;
         self.replay = saved.replay.with_capacity(self.replay.capacity());
+        Ok(())
+    }
+}
+
+impl Learning {
+    /// The discriminator alone, a hundredth of [`Learning::save`]: enough to judge style, not to go on training.
+    pub fn save_judge(&self) -> Vec<u8> {
+        let (weights, _, features) = self.core.discriminator.state();
+        let saved = SavedJudge {
+            format: FORMAT,
+            discriminator: tensors(self.core.discriminator.tensors(), weights),
+            features: features.state().clone(),
+        };
+        bincode::serde::encode_to_vec(&saved, bincode::config::standard())
+            .expect("plain numbers into memory")
+    }
+
+    /// Judges by a discriminator that was saved alone.
+    ///
+    /// # Errors
+    /// If the bytes are no saved discriminator, or one of other sizes. The learner is then as it was before.
+    pub fn load_judge(&mut self, bytes: &[u8]) -> Result<(), LearningError> {
+        let (saved, used): (SavedJudge, usize) =
+            bincode::serde::decode_from_slice(bytes, bincode::config::standard())
+                .map_err(|error| LearningError::Decode(error.to_string()))?;
+        if saved.format != FORMAT || used != bytes.len() {
+            return Err(LearningError::Decode(format!(
+                "format {}, {used} of {} bytes; this program reads format {FORMAT}",
+                saved.format,
+                bytes.len()
+            )));
+        }
+        let mut core = self.core.clone();
+        let layout = core.discriminator.tensors();
+        let (weights, _, features) = core.discriminator.state_mut();
+        restore(layout, saved.discriminator, weights)?;
+        features.restore(saved.features)?;
+        self.core = core;
         Ok(())
     }
 }

@@ -6,11 +6,17 @@ use g1::FEATURES;
 
 use super::subject::Kept;
 
+/// The whole learner, as training writes it.
+const LEARNING: &str = "learning.bin";
+
+/// The discriminator alone, as a shipped policy has it.
+const JUDGE: &str = "judge.bin";
+
 /// Windows of motion that are scored together: a call of the network costs more than a few rows.
 const TOGETHER: usize = 1_024;
 
 /// A discriminator with memory for what it has seen and for windows that wait to be scored.
-pub(super) struct Judge {
+pub(crate) struct Judge {
     learning: Learning,
     /// States that a window has.
     frames: usize,
@@ -23,7 +29,7 @@ pub(super) struct Judge {
 
 impl Judge {
     /// The discriminator of a checkpoint.
-    pub(super) fn of(kept: &Kept) -> Result<Self> {
+    pub(crate) fn of(kept: &Kept) -> Result<Self> {
         let mut config = kept.learning.clone();
         let frames = config.discriminator.frames;
         // Episodes are spread over threads already.
@@ -31,9 +37,12 @@ impl Judge {
         // The seed is of weights that are replaced at once.
         let mut learning =
             Learning::new(config, learner::robot(), 0).context("setting up the networks")?;
-        learning
-            .load(kept.part("learning.bin")?)
-            .with_context(|| format!("loading learning.bin of {}", kept.path.display()))?;
+        // A shipped policy brings its discriminator alone.
+        let (name, loaded) = match kept.part(JUDGE) {
+            Ok(bytes) => (JUDGE, learning.load_judge(bytes)),
+            Err(_) => (LEARNING, learning.load(kept.part(LEARNING)?)),
+        };
+        loaded.with_context(|| format!("loading {name} of {}", kept.path.display()))?;
         Ok(Self {
             learning,
             frames,
@@ -42,6 +51,11 @@ impl Judge {
             rewards: Vec::new(),
             sum: 0.0,
         })
+    }
+
+    /// What a shipped policy's folder holds of it: name and bytes.
+    pub(crate) fn part(&self) -> (&'static str, Vec<u8>) {
+        (JUDGE, self.learning.save_judge())
     }
 
     /// Takes one step of one robot: the features (53) before and after it. Before the first step of an

@@ -1,0 +1,49 @@
+//! `ampco export --ship`: a trained policy as a small folder that is opened like a checkpoint.
+//!
+//! Separate because the other exports are for other programs, and this one is for our own: a checkpoint without
+//! what only training needs (optimizers, memory, robots in mid-step).
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use run::Checkpoints;
+
+use crate::evaluate::judge::Judge;
+use crate::evaluate::subject::Kept;
+use crate::failure::usage;
+
+/// Writes the folder whole or not at all; gives its files and their sizes.
+pub(super) fn write(kept: &Kept, folder: &Path) -> Result<Vec<(PathBuf, usize)>> {
+    if folder.exists() {
+        return Err(usage(format!(
+            "{} is there already; remove it or give another --out",
+            folder.display()
+        )));
+    }
+    let mut draft = folder.as_os_str().to_owned();
+    draft.push(".new");
+    let draft = PathBuf::from(draft);
+    std::fs::create_dir_all(&draft).with_context(|| format!("making {}", draft.display()))?;
+    let (judge, judge_bytes) = Judge::of(kept)?.part();
+    let parts = [
+        ("policy.bin", kept.part("policy.bin")?),
+        (judge, &judge_bytes[..]),
+    ];
+    let written = Checkpoints::new(draft.clone())
+        .write(kept.iteration, "shipped", &parts)
+        .context("writing the policy")?;
+    let config = kept.config_path()?;
+    let text = std::fs::read(&config).with_context(|| format!("reading {}", config.display()))?;
+    run::replace_file(&written.join("config.toml"), &text)
+        .with_context(|| format!("writing {}", written.display()))?;
+    std::fs::rename(&written, folder)
+        .with_context(|| format!("moving the policy to {}", folder.display()))?;
+    std::fs::remove_dir(&draft).with_context(|| format!("removing {}", draft.display()))?;
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder)? {
+        let entry = entry?;
+        files.push((entry.path(), entry.metadata()?.len() as usize));
+    }
+    files.sort();
+    Ok(files)
+}
