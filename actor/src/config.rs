@@ -24,6 +24,8 @@ pub struct ActorConfig {
     pub starts: Starts,
     /// How long a send may wait for a busy learner.
     pub send_patience: Duration,
+    /// Whether every rollout is written down.
+    pub journal: bool,
 }
 
 impl ActorConfig {
@@ -49,6 +51,7 @@ impl ActorConfig {
                 .map(|(state, command, weight)| (*state, command, weight))
                 .collect(),
             send_patience: Duration::from_secs_f64(run.deadlines.send_seconds),
+            journal: run.journal,
         })
     }
 }

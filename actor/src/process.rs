@@ -5,10 +5,11 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use protocol::{
-    Domain, Node, RolloutHeader, RolloutPublisher, SendOutcome, Shutdown, TICK, WeightsHeader,
-    WeightsOrder, WeightsSubscriber,
+    Domain, Node, RolloutHeader, RolloutPublisher, SendOutcome, Shutdown, TICK, Weights,
+    WeightsHeader, WeightsOrder, WeightsSubscriber,
 };
 use run::Folder;
+use run::journal::{self, Entry, Journal};
 use tracing::{info, warn};
 
 use crate::config::ActorConfig;
@@ -20,13 +21,14 @@ pub fn run(run_dir: &Path, index: u32) -> Result<()> {
     let folder = Folder::open(run_dir)?;
     let role = format!("actor-{index}");
     run::log::init(&folder.logs(), &role)?;
-    let _held = folder.lock(&role)?;
+    let mut held = folder.lock(&role)?;
     let config = ActorConfig::read(&folder)?;
     let shutdown = Shutdown::on_signals()?;
     let node = Node::join(&Domain::for_run(folder.path())?, &role, &shutdown)?;
     let weights = WeightsSubscriber::new(&node).context("opening the weights stream")?;
     let mut rollouts = RolloutPublisher::new(&node, index, config.layout, config.send_patience)
         .context("opening the rollout stream")?;
+    let mut journal = Journal::open(&folder.logs(), &role, config.journal)?;
     info!(
         environments = config.layout.environments,
         steps = config.layout.steps,
@@ -57,7 +59,7 @@ pub fn run(run_dir: &Path, index: u32) -> Result<()> {
                         config.layout
                     );
                 }
-                if !obey(&header, index, &config, &mut worker, &checkpoints)? {
+                if !obey(&newest, index, &config, &mut worker, &checkpoints)? {
                     info!(version = header.version, "told to stop");
                     return Ok(());
                 }
@@ -78,6 +80,8 @@ pub fn run(run_dir: &Path, index: u32) -> Result<()> {
         let mut loan = rollouts.loan()?;
         let started = Instant::now();
         let timing = worker.collect(&mut loan.view_mut());
+        let key = rollouts.key();
+        journal.write(|| Entry::Sending(key));
         let sent = rollouts.send(
             loan,
             RolloutHeader {
@@ -91,7 +95,11 @@ pub fn run(run_dir: &Path, index: u32) -> Result<()> {
                 ..RolloutHeader::default()
             },
         )?;
+        journal.write(|| Entry::Sent(key, word(sent).to_owned()));
         delivered = sent == SendOutcome::Delivered;
+        if delivered {
+            held.at_work();
+        }
         if worker.faults() > faults {
             faults = worker.faults();
             warn!(
@@ -102,14 +110,26 @@ pub fn run(run_dir: &Path, index: u32) -> Result<()> {
     }
 }
 
+/// The journal's word for what a send came to.
+fn word(sent: SendOutcome) -> &'static str {
+    let [delivered, unheard, full, interrupted] = journal::OUTCOMES;
+    match sent {
+        SendOutcome::Delivered => delivered,
+        SendOutcome::Lost => unheard,
+        SendOutcome::Dropped => full,
+        SendOutcome::Interrupted => interrupted,
+    }
+}
+
 /// Does what the order says before collecting. False: stop.
 fn obey(
-    header: &WeightsHeader,
+    weights: &Weights,
     index: u32,
     config: &ActorConfig,
     worker: &mut Option<Worker>,
     checkpoints: &run::Checkpoints,
 ) -> Result<bool> {
+    let header = weights.header();
     let Some(order) = header.order() else {
         bail!(
             "the learner gave order {}, which this actor does not know; use programs of one build",
@@ -119,12 +139,25 @@ fn obey(
     let version = header.version;
     match worker {
         // A snapshot that a life before this one wrote for the same order is kept, not replaced.
-        None if order == WeightsOrder::SaveThenStop => return Ok(false),
-        None => *worker = Some(Worker::begin(config, index, header, checkpoints)?),
+        None if order == WeightsOrder::SaveThenStop => {
+            Worker::begin(config, index, header, weights.flat().len(), checkpoints)?;
+            return Ok(false);
+        }
+        None => {
+            *worker = Some(Worker::begin(
+                config,
+                index,
+                header,
+                weights.flat().len(),
+                checkpoints,
+            )?)
+        }
         Some(worker) => match order {
             WeightsOrder::Collect => {}
             WeightsOrder::SaveThenCollect => worker.save(index, version, checkpoints),
-            WeightsOrder::RestoreThenCollect => worker.restore(index, version, checkpoints),
+            WeightsOrder::RestoreThenCollect => {
+                worker.restore_or_save(index, version, checkpoints);
+            }
             WeightsOrder::SaveThenStop => {
                 worker.save(index, version, checkpoints);
                 return Ok(false);

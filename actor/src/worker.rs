@@ -3,12 +3,13 @@
 //! A worker is born with the first weights it receives, because they say how it begins: anew, or
 //! where a checkpoint left it.
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use policy::{Policy, Shape};
 use protocol::{RolloutViewMut, WeightsHeader, WeightsOrder};
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 use run::Checkpoints;
+use run::checkpoint::robots_of;
 use serde::{Deserialize, Serialize};
 use sim::{Fleet, TaskConfig};
 use tracing::{info, warn};
@@ -31,7 +32,7 @@ struct Snapshot {
 }
 
 impl Worker {
-    /// Begins with the weights of `header`: where their checkpoint left this actor if it has a
+    /// Begins with the `weights` numbers of `header`: where their checkpoint left this actor if it has a
     /// snapshot of it, else anew.
     ///
     /// A worker that begins anew is seeded by run, actor and version: an actor that comes back in
@@ -40,6 +41,7 @@ impl Worker {
         config: &ActorConfig,
         index: u32,
         header: &WeightsHeader,
+        weights: usize,
         checkpoints: &Checkpoints,
     ) -> Result<Self> {
         let seed = mix(mix(config.seed, u64::from(index) + 1), header.version);
@@ -51,45 +53,55 @@ impl Worker {
             seed,
         )
         .context("setting up the fleet")?;
-        let shape = Shape {
-            hidden: hidden(header),
-        };
+        let shape = shape(header, weights)?;
         let mut worker = Self {
             fleet,
             policy: Policy::new(shape),
             generator: Pcg64Mcg::seed_from_u64(mix(seed, 0)),
         };
         if header.order() != Some(WeightsOrder::Collect) {
-            worker.restore(index, header.version, checkpoints);
+            worker.restore_or_save(index, header.version, checkpoints);
         }
         Ok(worker)
     }
 
-    /// Takes the state that this actor had at checkpoint `version`; what cannot be read is left,
-    /// and said: a checkpoint without an actor's fleet is still a good checkpoint.
-    pub(crate) fn restore(&mut self, index: u32, version: u64, checkpoints: &Checkpoints) {
-        let bytes = match checkpoints.attachment(version, &name(index)) {
+    /// Takes the state that this actor had at checkpoint `version`. Where there is none, the run goes
+    /// on with the state as it is now, and so it belongs to the checkpoint: it is saved.
+    pub(crate) fn restore_or_save(&mut self, index: u32, version: u64, checkpoints: &Checkpoints) {
+        if !self.restore(index, version, checkpoints) {
+            self.save(index, version, checkpoints);
+        }
+    }
+
+    /// Whether there was a state to be taken; what cannot be read is left, and said: a checkpoint
+    /// without an actor's fleet is still a good checkpoint.
+    fn restore(&mut self, index: u32, version: u64, checkpoints: &Checkpoints) -> bool {
+        let bytes = match checkpoints.attachment(version, &robots_of(index)) {
             Ok(Some(bytes)) => bytes,
             Ok(None) => {
                 info!(
                     version,
-                    "no snapshot of this actor; its episodes begin anew"
+                    "no snapshot of this actor; its episodes go on as they are"
                 );
-                return;
+                return false;
             }
             Err(error) => {
-                warn!(version, %error, "snapshot of this actor refused; its episodes begin anew");
-                return;
+                warn!(version, %error, "snapshot of this actor refused; its episodes go on as they are");
+                return false;
             }
         };
         match self.decode(&bytes) {
-            Ok(()) => info!(version, "fleet restored"),
+            Ok(()) => {
+                info!(version, "fleet restored");
+                true
+            }
             Err(error) => {
                 warn!(
                     version,
                     error = format!("{error:#}"),
-                    "snapshot of this actor refused; its episodes begin anew"
+                    "snapshot of this actor refused; its episodes go on as they are"
                 );
+                false
             }
         }
     }
@@ -112,7 +124,7 @@ impl Worker {
         };
         let bytes = bincode::serde::encode_to_vec(&snapshot, bincode::config::standard())
             .expect("a snapshot can be written to memory");
-        if let Err(error) = checkpoints.attach(version, &name(index), &bytes) {
+        if let Err(error) = checkpoints.attach(version, &robots_of(index), &bytes) {
             warn!(version, %error, "snapshot of this actor not written");
         }
     }
@@ -127,9 +139,9 @@ impl Worker {
         if config.task.curriculum.is_some() {
             self.fleet.set_task(task_at(config, header));
         }
-        let hidden = hidden(header);
-        if self.policy.shape().hidden != hidden {
-            self.policy = Policy::new(Shape { hidden });
+        let shape = shape(header, flat.len())?;
+        if *self.policy.shape() != shape {
+            self.policy = Policy::new(shape);
         }
         self.policy
             .load(flat)
@@ -152,16 +164,22 @@ impl Worker {
     }
 }
 
-fn hidden(header: &WeightsHeader) -> Vec<usize> {
-    header
+/// The policy's shape, if so many weights have it: nothing is reserved for one that they have not.
+fn shape(header: &WeightsHeader, weights: usize) -> Result<Shape> {
+    let hidden: Vec<usize> = header
         .hidden()
         .iter()
         .map(|&width| width as usize)
-        .collect()
-}
-
-fn name(index: u32) -> String {
-    format!("actor-{index}.bin")
+        .collect();
+    let shape = Shape { hidden };
+    ensure!(
+        shape.fits(weights),
+        "policy version {} is of {weights} numbers, its header says hidden layers {:?}; use programs \
+         of one build",
+        header.version,
+        shape.hidden
+    );
+    Ok(shape)
 }
 
 /// The task by now: iterations of full batches have made the weights.

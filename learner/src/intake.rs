@@ -7,6 +7,8 @@ use anyhow::{Result, bail};
 use protocol::{
     Entry, Ledger, Rollout, RolloutHeader, RolloutLayout, RolloutSubscriber, Shutdown, TICK,
 };
+use run::Folder;
+use run::journal::{self, Journal};
 use tracing::{info, warn};
 
 use crate::roster::Roster;
@@ -48,8 +50,27 @@ pub(crate) struct Intake {
     ledger: Ledger,
     learner: u64,
     terms: Terms,
-    /// Rollouts of an actor that had answered already, as a restarted one does.
-    surplus: u64,
+    /// Where actors show that they are alive.
+    folder: Folder,
+    journal: Journal,
+    unused: Unused,
+}
+
+/// Rollouts that arrived in time and were not used all the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Unused {
+    /// Their actor had answered already, as a restarted one does.
+    pub(crate) surplus: u64,
+    /// A number in them was none.
+    pub(crate) unusable: u64,
+}
+
+/// What has come together so far.
+struct Gathering<'a> {
+    version: u64,
+    batch: &'a mut Batch,
+    seats: Vec<Seat>,
+    gathered: Gathered,
 }
 
 impl Intake {
@@ -58,6 +79,8 @@ impl Intake {
         learner: u64,
         actors: usize,
         terms: Terms,
+        folder: Folder,
+        journal: Journal,
     ) -> Self {
         Self {
             rollouts,
@@ -65,54 +88,72 @@ impl Intake {
             ledger: Ledger::default(),
             learner,
             terms,
-            surplus: 0,
+            folder,
+            journal,
+            unused: Unused::default(),
         }
     }
 
-    /// Counts of rollouts that were dropped on their way, or came and were not used.
+    /// Counts of rollouts that were dropped on their way, or came too late.
     pub(crate) fn ledger(&self) -> &Ledger {
         &self.ledger
     }
 
-    /// Rollouts not used because their actor had answered already.
-    pub(crate) fn surplus(&self) -> u64 {
-        self.surplus
+    /// Counts of rollouts that came in time and were not used.
+    pub(crate) fn unused(&self) -> Unused {
+        self.unused
+    }
+
+    /// The actors whose rollouts are awaited, in the order of their numbers.
+    pub(crate) fn members(&self) -> impl Iterator<Item = u32> + '_ {
+        self.roster.members()
     }
 
     /// Fills `batch` with rollouts that weights of `version` answer for.
     ///
-    /// `None` if a stop was asked for while no actor answers. Otherwise an iteration that has begun
-    /// is brought to its end, because a checkpoint stands between two rollouts.
+    /// `None` if a stop was asked for and nobody lives who could still answer. Otherwise an iteration
+    /// that has begun is brought to its end, because a checkpoint stands between two rollouts.
     pub(crate) fn gather(
         &mut self,
         version: u64,
         batch: &mut Batch,
         shutdown: &Shutdown,
     ) -> Result<Option<Gathered>> {
-        let mut seats = self.seats();
+        let seats = self.seats();
         batch.resize(
             seats.len(),
             self.terms.layout.steps,
             self.terms.layout.environments,
         );
-        let mut gathered = Gathered::default();
+        let mut now = Gathering {
+            version,
+            batch,
+            seats,
+            gathered: Gathered::default(),
+        };
         let mut since = Instant::now();
         let mut warned = false;
-        while seats.iter().any(|seat| !seat.taken) {
+        while now.seats.iter().any(|seat| !seat.taken) {
             match self.rollouts.receive()? {
                 Some(rollout) => {
-                    self.seat(&rollout, version, batch, &mut seats, &mut gathered)?;
+                    self.take(&rollout, &mut now)?;
                     continue;
                 }
                 None => {
                     self.rollouts.wait(TICK)?;
                 }
             }
+            if shutdown.requested() && !self.can_still_be_filled(&now.seats) {
+                return Ok(None);
+            }
+            if !self.terms.lockstep {
+                self.dismiss_silent(&mut now);
+            }
             if since.elapsed() < self.terms.patience {
                 continue;
             }
-            if seats.iter().any(|seat| seat.taken) {
-                self.leave_empty_seats(batch, &mut seats);
+            if now.seats.iter().any(|seat| seat.taken) {
+                self.leave_empty_seats(&mut now);
             } else {
                 if !warned {
                     warn!(
@@ -127,9 +168,24 @@ impl Intake {
                 since = Instant::now();
             }
         }
-        gathered.actors = self.roster.len();
-        gathered.average();
-        Ok(Some(gathered))
+        now.gathered.actors = self.roster.len();
+        now.gathered.average();
+        Ok(Some(now.gathered))
+    }
+
+    /// Whether actors live that can fill the empty seats: all that are awaited in lock-step, else any.
+    fn can_still_be_filled(&self, seats: &[Seat]) -> bool {
+        let lives = |actor: u32| {
+            let holder = self.folder.holder(&format!("actor-{actor}"));
+            // Where that cannot be read, waiting has its deadline all the same.
+            !matches!(holder, Ok(None))
+        };
+        if self.terms.lockstep && self.roster.len() > 0 {
+            let mut awaited = seats.iter().filter(|seat| !seat.taken);
+            awaited.all(|seat| seat.actor.is_some_and(lives))
+        } else {
+            self.roster.members().any(lives)
+        }
     }
 
     /// One seat per rollout wanted: in lock-step an actor's own, else anybody's.
@@ -148,21 +204,14 @@ impl Intake {
     }
 
     /// Copies a rollout that is wanted to its seat, and counts one that is not.
-    fn seat(
-        &mut self,
-        rollout: &Rollout,
-        version: u64,
-        batch: &mut Batch,
-        seats: &mut Vec<Seat>,
-        gathered: &mut Gathered,
-    ) -> Result<()> {
+    fn take(&mut self, rollout: &Rollout, now: &mut Gathering<'_>) -> Result<()> {
         let header = *rollout.header();
         let lag = if self.terms.lockstep {
             0
         } else {
             self.terms.max_lag
         };
-        let oldest = version.saturating_sub(lag);
+        let oldest = now.version.saturating_sub(lag);
         if rollout.layout() != self.terms.layout {
             bail!(
                 "actor {} sends {:?}, this run's configuration says {:?}; restart the group",
@@ -171,52 +220,75 @@ impl Intake {
                 self.terms.layout
             );
         }
-        match self.ledger.enter(&header, self.learner, oldest) {
-            Entry::Fresh => {}
-            refused => {
-                info!(
-                    actor = header.actor,
-                    version = header.policy_version,
-                    ?refused,
-                    "rollout not used"
-                );
-                return Ok(());
-            }
+        let fate = match self.ledger.enter(&header, self.learner, oldest) {
+            Entry::Fresh => self.seat(rollout, now),
+            Entry::Stale => "stale",
+            Entry::Duplicate => "duplicate",
+        };
+        if fate != "used" {
+            info!(
+                actor = header.actor,
+                version = header.policy_version,
+                fate,
+                "rollout not used"
+            );
         }
+        let key = (header.actor, header.incarnation, header.sequence);
+        let (learner, iteration) = (self.learner, now.version + 1);
+        self.journal
+            .write(|| journal::Entry::Received(learner, iteration, key, fate.to_owned()));
+        Ok(())
+    }
+
+    /// Copies a fresh rollout to its seat. Returns its fate.
+    fn seat(&mut self, rollout: &Rollout, now: &mut Gathering<'_>) -> &'static str {
+        let header = *rollout.header();
+        let layout = self.terms.layout;
         let newcomer = self.roster.join(header.actor);
         if newcomer {
             info!(actor = header.actor, "actor joined");
         }
         let fits = |seat: &Seat| !seat.taken && seat.actor.is_none_or(|own| own == header.actor);
-        let place = match seats.iter().position(fits) {
-            Some(place) => place,
-            None if newcomer => {
-                seats.push(Seat {
-                    actor: Some(header.actor),
-                    taken: false,
-                });
-                batch.add_segment(self.terms.layout.steps, self.terms.layout.environments);
-                seats.len() - 1
+        let mut place = now.seats.iter().position(fits);
+        if let Some(flaw) = rollout.flaw() {
+            warn!(
+                actor = header.actor,
+                field = flaw.field,
+                row = flaw.row,
+                value = flaw.value,
+                "rollout refused: a number in it cannot be"
+            );
+            self.unused.unusable += 1;
+            // It was the answer: there will be no other in this iteration.
+            if let Some(place) = place {
+                now.batch.remove_segment(place);
+                now.seats.remove(place);
             }
-            None => {
-                self.surplus += 1;
-                info!(
-                    actor = header.actor,
-                    "rollout not used: its actor has answered already"
-                );
-                return Ok(());
-            }
+            return "unusable";
+        }
+        if place.is_none() && newcomer {
+            now.seats.push(Seat {
+                actor: Some(header.actor),
+                taken: false,
+            });
+            now.batch.add_segment(layout.steps, layout.environments);
+            place = Some(now.seats.len() - 1);
+        }
+        let Some(place) = place else {
+            self.unused.surplus += 1;
+            return "surplus";
         };
-        seats[place].taken = true;
+        now.seats[place].taken = true;
         let began = Instant::now();
-        copy(rollout, batch, place);
-        gathered.copy_seconds += began.elapsed().as_secs_f64();
-        gathered.count(&header, version);
-        Ok(())
+        copy(rollout, now.batch, place);
+        now.gathered.copy_seconds += began.elapsed().as_secs_f64();
+        now.gathered.count(&header, now.version);
+        "used"
     }
 
-    fn leave_empty_seats(&mut self, batch: &mut Batch, seats: &mut Vec<Seat>) {
-        let answered: Vec<u32> = seats
+    fn leave_empty_seats(&mut self, now: &mut Gathering<'_>) {
+        let answered: Vec<u32> = now
+            .seats
             .iter()
             .filter(|seat| seat.taken)
             .filter_map(|seat| seat.actor)
@@ -227,10 +299,30 @@ impl Intake {
         } else {
             warn!("actors are slow; the batch goes on with what came");
         }
-        for place in (0..seats.len()).rev() {
-            if !seats[place].taken {
-                batch.remove_segment(place);
-                seats.remove(place);
+        for place in (0..now.seats.len()).rev() {
+            if !now.seats[place].taken {
+                now.batch.remove_segment(place);
+                now.seats.remove(place);
+            }
+        }
+    }
+
+    /// Overlapped, others fill the seats of actors that are gone, so their absence has to be looked for.
+    /// Asked when no rollout waits: whoever lives has been heard then, also after this process stood
+    /// still.
+    fn dismiss_silent(&mut self, now: &mut Gathering<'_>) {
+        let gone = self.roster.dismiss_silent_for(self.terms.patience);
+        if gone.is_empty() {
+            return;
+        }
+        warn!(?gone, "actors are silent; batches go on without them");
+        for _ in gone {
+            // One seat of the batch stays, for whoever comes.
+            if now.seats.len() > 1
+                && let Some(place) = now.seats.iter().rposition(|seat| !seat.taken)
+            {
+                now.batch.remove_segment(place);
+                now.seats.remove(place);
             }
         }
     }

@@ -8,9 +8,10 @@ use protocol::{
     DirectiveSubscriber, Domain, Node, RewardPublisher, RolloutSubscriber, Shutdown, WeightsHeader,
     WeightsOrder, WeightsPublisher,
 };
+use run::journal::{self, Journal};
 use run::{Events, Folder, Metrics};
 use serde::Serialize;
-use tracing::warn;
+use tracing::{info, warn};
 
 use crate::config::LearnerConfig;
 use crate::guidance::Guidance;
@@ -20,7 +21,9 @@ use crate::state::State;
 pub(crate) struct Lines {
     pub(crate) intake: Intake,
     pub(crate) guidance: Guidance,
-    pub(crate) metrics: Metrics,
+    metrics: Metrics,
+    /// The last line of the metrics could not be written.
+    unwritten: bool,
     /// None once it could not be written.
     events: Option<Events>,
     rewards: RewardPublisher,
@@ -56,10 +59,20 @@ impl Lines {
         if let Some(remembered) = state.remembered {
             guidance.recall(remembered)?;
         }
+        let mut journal = Journal::open(&folder.logs(), "learner", config.run.journal)?;
+        journal.write(|| journal::Entry::Begun(node.incarnation(), state.iteration));
         let mut lines = Self {
-            intake: Intake::new(rollouts, node.incarnation(), config.fleet.actors, terms),
+            intake: Intake::new(
+                rollouts,
+                node.incarnation(),
+                config.fleet.actors,
+                terms,
+                folder.clone(),
+                journal,
+            ),
             guidance,
             metrics: Metrics::open(&folder.metrics_path())?,
+            unwritten: false,
             events: Events::create(folder.path(), state.iteration, now())
                 .map_err(without_events)
                 .ok(),
@@ -74,9 +87,30 @@ impl Lines {
         Ok(lines)
     }
 
-    /// A line of the metrics, and the same figures for TensorBoard.
-    pub(crate) fn log(&mut self, record: &impl Serialize) -> Result<()> {
-        self.metrics.append(record)?;
+    /// A line of the metrics, and the same figures for TensorBoard. A disk that refuses stops the
+    /// writing, not the training.
+    pub(crate) fn log(&mut self, record: &impl Serialize) {
+        match self.metrics.append(record) {
+            Ok(()) if self.unwritten => {
+                let lost = self.metrics.lost();
+                info!(
+                    lost,
+                    "metrics are written again, with the lines that waited"
+                );
+                self.unwritten = false;
+            }
+            Ok(()) => {}
+            Err(problem) => {
+                if !self.unwritten {
+                    let problem = format!("{:#}", anyhow::Error::from(problem));
+                    warn!(
+                        problem,
+                        "metrics not written; training goes on, their lines wait"
+                    );
+                }
+                self.unwritten = true;
+            }
+        }
         if let Some(events) = &mut self.events {
             let written = serde_json::to_value(record)
                 .map_err(std::io::Error::from)
@@ -85,7 +119,14 @@ impl Lines {
                 self.events = None;
             }
         }
-        Ok(())
+    }
+
+    /// Makes the metrics outlive a power cut.
+    pub(crate) fn sync(&self) {
+        if let Err(problem) = self.metrics.sync() {
+            let problem = format!("{:#}", anyhow::Error::from(problem));
+            warn!(problem, "metrics are not on the disk yet");
+        }
     }
 
     /// Tells the scheduler how iteration `state.iteration` was paid.

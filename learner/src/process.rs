@@ -6,7 +6,7 @@ use std::time::Instant;
 use amp::{Batch, IterationReport, LearningError};
 use anyhow::{Context, Result};
 use protocol::{Shutdown, WeightsOrder};
-use run::Folder;
+use run::{Folder, Lock};
 use tracing::{error, info, warn};
 
 use crate::config::LearnerConfig;
@@ -26,7 +26,7 @@ pub fn run(run_dir: &Path, resume: bool) -> Result<()> {
     protocol::end_with_supervisor()?;
     let folder = Folder::open(run_dir)?;
     run::log::init(&folder.logs(), "learner")?;
-    let _held = folder.lock("learner")?;
+    let held = folder.lock("learner")?;
     let config = LearnerConfig::read(&folder)?;
     let shutdown = Shutdown::on_signals()?;
     let mut state = State::begin(&folder, &config, resume)?;
@@ -36,6 +36,7 @@ pub fn run(run_dir: &Path, resume: bool) -> Result<()> {
         refusals: 0,
         watch: Watch::default(),
         cores: Cores::default(),
+        held,
         folder,
         config,
     };
@@ -68,8 +69,9 @@ pub fn run(run_dir: &Path, resume: bool) -> Result<()> {
             gathered,
         };
         learner.tell(&mut lines, &state, &batch, &guide, &learned, &span)?;
+        let actors: Vec<u32> = lines.intake.members().collect();
         if learner.is_hopeless() {
-            learner.save(&mut state);
+            learner.save(&mut state, &actors);
             return Err(learned.expect_err("refused")).context(format!(
                 "{MOST_REFUSALS} updates in a row were refused; the last good weights are in {}",
                 learner.folder.checkpoints().path(state.iteration).display()
@@ -79,13 +81,14 @@ pub fn run(run_dir: &Path, resume: bool) -> Result<()> {
         if state
             .iteration
             .is_multiple_of(learner.config.run.checkpoint_every)
-            && learner.save(&mut state)
+            && learner.save(&mut state, &actors)
         {
             order = WeightsOrder::SaveThenCollect;
         }
     }
-    lines.metrics.sync()?;
-    learner.save(&mut state);
+    lines.sync();
+    let actors: Vec<u32> = lines.intake.members().collect();
+    learner.save(&mut state, &actors);
     lines.broadcast(&mut state, &learner.config, WeightsOrder::SaveThenStop)?;
     info!(iteration = state.iteration, "done");
     Ok(())
@@ -99,6 +102,7 @@ struct Loop {
     refusals: u64,
     watch: Watch,
     cores: Cores,
+    held: Lock,
 }
 
 /// One turn of the loop, from its broadcast on.
@@ -123,10 +127,10 @@ impl Loop {
         state.seconds_before + self.started.elapsed().as_secs_f64()
     }
 
-    /// Writes a checkpoint; a disk that refuses stops the writing, not the training.
-    fn save(&self, state: &mut State) -> bool {
+    /// Writes a checkpoint, to which `actors` are to add their robots; a disk that refuses stops the writing, not the training.
+    fn save(&self, state: &mut State, actors: &[u32]) -> bool {
         let seconds = self.seconds(state);
-        match state.save(&self.folder, &self.config, seconds) {
+        match state.save(&self.folder, &self.config, actors, seconds) {
             Ok(()) => true,
             Err(problem) => {
                 let problem = anyhow::Error::from(problem);
@@ -158,7 +162,8 @@ impl Loop {
                 let idle_share = self.cores.idle_share();
                 let mut record = self.record(lines, state, &measures, guide, report, span);
                 record.timing.idle_share = idle_share;
-                lines.log(&record)?;
+                lines.log(&record);
+                self.held.at_work();
                 lines.report(state)
             }
             Err(problem) => {
@@ -168,7 +173,7 @@ impl Loop {
                     iteration: state.iteration,
                     samples: state.samples,
                     fault: problem.to_string(),
-                })?;
+                });
                 Ok(())
             }
         }
@@ -196,7 +201,7 @@ impl Loop {
             traffic: Traffic::of(
                 gathered,
                 lines.intake.ledger().totals(),
-                lines.intake.surplus(),
+                lines.intake.unused(),
             ),
             timing: Timing {
                 seconds: self.seconds(state),

@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 
 use crate::gait::Measures;
 use crate::guidance::Guide;
-use crate::intake::Gathered;
+use crate::intake::{Gathered, Unused};
 
 /// One iteration.
 #[derive(Serialize)]
@@ -139,10 +139,11 @@ pub(crate) struct Traffic {
     duplicated: u64,
     stale: u64,
     surplus: u64,
+    unusable: u64,
 }
 
 impl Traffic {
-    pub(crate) fn of(gathered: &Gathered, totals: Totals, surplus: u64) -> Self {
+    pub(crate) fn of(gathered: &Gathered, totals: Totals, unused: Unused) -> Self {
         Self {
             actors: gathered.actors,
             rollouts: gathered.rollouts,
@@ -150,7 +151,8 @@ impl Traffic {
             dropped: totals.dropped,
             duplicated: totals.duplicated,
             stale: totals.stale,
-            surplus,
+            surplus: unused.surplus,
+            unusable: unused.unusable,
         }
     }
 }

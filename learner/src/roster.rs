@@ -3,25 +3,28 @@
 //! In lock-step a batch holds one rollout of every member, in the order of their numbers, so that
 //! the same actors give the same batch whatever order their rollouts arrive in.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
 
-/// The actors that are expected to answer a broadcast.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// The actors that are expected to answer a broadcast, and when each was last heard.
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Roster {
-    members: BTreeSet<u32>,
+    members: BTreeMap<u32, Instant>,
 }
 
 impl Roster {
     /// The actors that a run is launched with: 0 to `actors - 1`.
     pub(crate) fn launched(actors: usize) -> Self {
         Self {
-            members: (0..actors as u32).collect(),
+            members: (0..actors as u32)
+                .map(|actor| (actor, Instant::now()))
+                .collect(),
         }
     }
 
     /// Members in the order of their numbers.
     pub(crate) fn members(&self) -> impl Iterator<Item = u32> + '_ {
-        self.members.iter().copied()
+        self.members.keys().copied()
     }
 
     /// How many rollouts make up a batch.
@@ -29,9 +32,22 @@ impl Roster {
         self.members.len()
     }
 
-    /// Takes in an actor that came by itself. False if it was a member already.
+    /// Hears an actor, and takes it in if it came by itself. False if it was a member already.
     pub(crate) fn join(&mut self, actor: u32) -> bool {
-        self.members.insert(actor)
+        self.members.insert(actor, Instant::now()).is_none()
+    }
+
+    /// Drops those that were not heard for as long as `patience`; returns them.
+    pub(crate) fn dismiss_silent_for(&mut self, patience: Duration) -> Vec<u32> {
+        let mut gone = Vec::new();
+        self.members.retain(|actor, heard| {
+            let silent = heard.elapsed() >= patience;
+            if silent {
+                gone.push(*actor);
+            }
+            !silent
+        });
+        gone
     }
 
     /// Keeps only those that answered; returns the ones that are gone.
@@ -42,7 +58,7 @@ impl Roster {
             .members()
             .filter(|actor| !answered.contains(actor))
             .collect();
-        self.members = answered.iter().copied().collect();
+        self.members.retain(|actor, _| answered.contains(actor));
         gone
     }
 }
@@ -66,6 +82,18 @@ mod tests {
         assert_eq!(roster.dismiss_all_but(&[0, 2]), [1]);
         assert_eq!(roster.len(), 2);
         assert!(roster.join(1));
-        assert_eq!(roster, Roster::launched(3));
+        assert_eq!(roster.members().collect::<Vec<_>>(), [0, 1, 2]);
+    }
+
+    #[test]
+    fn who_was_heard_lately_stays() {
+        let mut roster = Roster::launched(2);
+        assert!(
+            roster
+                .dismiss_silent_for(Duration::from_secs(3600))
+                .is_empty()
+        );
+        assert_eq!(roster.dismiss_silent_for(Duration::ZERO), [0, 1]);
+        assert_eq!(roster.len(), 0);
     }
 }

@@ -8,9 +8,10 @@ use anyhow::{Context, Result};
 use protocol::RewardReport;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
-use run::{Checkpoint, CheckpointError, Folder};
+use run::checkpoint::robots_of;
+use run::{Checkpoint, CheckpointError, Contents, Folder, Mode};
 use serde::{Deserialize, Serialize};
-use tracing::info;
+use tracing::{info, warn};
 
 use crate::config::LearnerConfig;
 use crate::guidance::{Guide, Remembered};
@@ -38,6 +39,27 @@ pub(crate) struct State {
     generator: Pcg64Mcg,
     /// The iteration of the newest checkpoint; writing it again would lose the actors' share.
     saved: Option<u64>,
+    earned: Earned,
+}
+
+/// What robots have earned since the checkpoint before, by which checkpoints are compared: the task
+/// reward, which means the same in every phase.
+#[derive(Clone, Copy, Debug, Default)]
+struct Earned {
+    reward: f64,
+    episodes: u64,
+}
+
+impl Earned {
+    fn add(&mut self, report: &IterationReport) {
+        self.reward += report.task_mean * report.rows as f64;
+        self.episodes += report.falls + report.time_outs;
+    }
+
+    /// Mean sum of task rewards (Eq. 14) of an episode; `None` before one has ended.
+    fn score(&self) -> Option<f64> {
+        (self.episodes > 0).then(|| self.reward / self.episodes as f64)
+    }
 }
 
 /// A reward report as a checkpoint keeps it.
@@ -78,11 +100,22 @@ impl State {
             // Any stream but those that the networks' own seeds begin.
             generator: Pcg64Mcg::seed_from_u64(config.run.seed ^ 0x0045_5850_4552_5453),
             saved: None,
+            earned: Earned::default(),
         };
         if resume {
-            let checkpoint = folder.checkpoints().open_newest(&shape(config))?;
+            let checkpoints = folder.checkpoints();
+            let checkpoint = checkpoints.open_whole(&shape(config))?;
             state.take_up(&checkpoint)?;
-            info!(iteration = state.iteration, "checkpoint taken up");
+            checkpoints.forget_after(state.iteration)?;
+            let whole = checkpoints.is_whole(&checkpoint);
+            info!(iteration = state.iteration, whole, "checkpoint taken up");
+            if !whole {
+                warn!(
+                    iteration = state.iteration,
+                    "no checkpoint has the robots of all actors; episodes of those that are missing \
+                     begin anew"
+                );
+            }
         }
         run::metrics::truncate_after(&folder.metrics_path(), state.iteration)?;
         Ok(state)
@@ -130,6 +163,7 @@ impl State {
             .learning
             .iterate(batch, &mut experts, guide.rule, guide.granularity);
         if let Ok(report) = &report {
+            self.earned.add(report);
             self.last_report = Some(StoredReport {
                 iteration: self.iteration,
                 samples: batch.rows() as u64,
@@ -148,11 +182,14 @@ impl State {
         self.last_report.map_or(0, |report| report.iteration)
     }
 
-    /// Writes a checkpoint, unless this iteration has one, and drops those that are too many.
+    /// Writes a checkpoint, unless this iteration has one, and drops those that are too many. In
+    /// lock-step it is whole once `actors` have added their robots; overlapped, robots are in
+    /// mid-rollout, and nothing exact depends on them.
     pub(crate) fn save(
         &mut self,
         folder: &Folder,
         config: &LearnerConfig,
+        actors: &[u32],
         seconds: f64,
     ) -> Result<(), CheckpointError> {
         if self.saved == Some(self.iteration) {
@@ -172,16 +209,23 @@ impl State {
             .iter()
             .flat_map(|number| number.to_le_bytes())
             .collect();
+        let awaited: Vec<String> = match config.run.mode {
+            Mode::Lockstep => actors.iter().map(|actor| robots_of(*actor)).collect(),
+            Mode::Overlapped => Vec::new(),
+        };
         let checkpoints = folder.checkpoints();
-        checkpoints.write(
-            self.iteration,
-            &shape(config),
-            &[
+        let contents = Contents {
+            shape: &shape(config),
+            parts: &[
                 (SHELL, &shell),
                 (LEARNING, &self.learning.save()),
                 (POLICY, &policy),
             ],
-        )?;
+            awaited: &awaited,
+            score: self.earned.score(),
+        };
+        checkpoints.write_contents(self.iteration, &contents)?;
+        self.earned = Earned::default();
         self.saved = Some(self.iteration);
         checkpoints.prune(config.run.keep_checkpoints)
     }

@@ -44,7 +44,7 @@ pub use port::{SendOutcome, Wake};
 pub use presence::{Node, TICK};
 pub use reward::{RewardArrival, RewardPublisher, RewardReport, RewardSubscriber};
 pub use rollout::{
-    Entry, Ledger, Rollout, RolloutHeader, RolloutLayout, RolloutLoan, RolloutPublisher,
+    Entry, Flaw, Ledger, Rollout, RolloutHeader, RolloutLayout, RolloutLoan, RolloutPublisher,
     RolloutStep, RolloutStepMut, RolloutSubscriber, RolloutView, RolloutViewMut, SendTotals,
     Totals,
 };

@@ -147,8 +147,8 @@ impl Gaps {
             self.next = 0;
         }
         let missed = report.sequence.saturating_sub(self.next);
-        self.next = report.sequence + 1;
-        self.missed += missed;
+        self.next = report.sequence.saturating_add(1);
+        self.missed = self.missed.saturating_add(missed);
         RewardArrival {
             report,
             missed,

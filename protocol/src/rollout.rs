@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use iceoryx2::prelude::ZeroCopySend;
 
-pub use layout::{RolloutLayout, RolloutStep, RolloutStepMut, RolloutView, RolloutViewMut};
+pub use layout::{Flaw, RolloutLayout, RolloutStep, RolloutStepMut, RolloutView, RolloutViewMut};
 pub use ledger::{Entry, Ledger, Totals};
 
 use crate::error::PortError;
@@ -51,6 +51,24 @@ pub struct RolloutHeader {
     pub waiting_seconds: f32,
     /// Wall-clock seconds from the first to the last step.
     pub collect_seconds: f32,
+}
+
+impl RolloutHeader {
+    /// Sizes, if a message of `numbers` numbers has them.
+    pub fn layout(&self, numbers: usize) -> Result<RolloutLayout, PortError> {
+        let layout = RolloutLayout {
+            environments: self.environments as usize,
+            steps: self.steps as usize,
+        };
+        match layout.checked_len() {
+            Some(expected) if expected == numbers && numbers > 0 => Ok(layout),
+            expected => Err(PortError::Length {
+                stream: Rollouts::SPEC.name,
+                expected: expected.unwrap_or(usize::MAX),
+                got: numbers,
+            }),
+        }
+    }
 }
 
 /// An actor's end.
@@ -153,6 +171,11 @@ impl RolloutPublisher {
         self.layout
     }
 
+    /// Actor, life and number of the next rollout that is sent.
+    pub fn key(&self) -> (u32, u64, u64) {
+        (self.actor, self.incarnation, self.sequence)
+    }
+
     /// What became of the rollouts so far.
     pub fn totals(&self) -> SendTotals {
         self.totals
@@ -209,20 +232,7 @@ impl RolloutSubscriber {
         let Some(sample) = self.port.receive()? else {
             return Ok(None);
         };
-        let header = sample.user_header();
-        let layout = RolloutLayout {
-            environments: header.environments as usize,
-            steps: header.steps as usize,
-        };
-        let (expected, got) = (layout.len(), sample.payload().len());
-        if expected != got {
-            let stream = Rollouts::SPEC.name;
-            return Err(PortError::Length {
-                stream,
-                expected,
-                got,
-            });
-        }
+        let layout = sample.user_header().layout(sample.payload().len())?;
         Ok(Some(Rollout { sample, layout }))
     }
 
@@ -261,6 +271,11 @@ impl Rollout {
     /// All fields.
     pub fn view(&self) -> RolloutView<'_> {
         self.layout.view(self.sample.payload())
+    }
+
+    /// The first number that cannot be, if there is one.
+    pub fn flaw(&self) -> Option<Flaw> {
+        self.view().flaw()
     }
 
     /// The whole block, [`RolloutLayout::len`] numbers.

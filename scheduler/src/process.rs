@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use protocol::{
     Directive, DirectivePublisher, Domain, Node, RewardArrival, RewardSubscriber, Shutdown, Wake,
 };
-use run::Folder;
+use run::{Folder, Lock};
 use tracing::{info, warn};
 
 use crate::desk::Desk;
@@ -22,17 +22,17 @@ pub fn run(run_dir: &Path) -> Result<()> {
     protocol::end_with_supervisor()?;
     let folder = Folder::open(run_dir)?;
     run::log::init(&folder.logs(), "scheduler").context("opening the log")?;
-    let _held = folder.lock("scheduler")?;
+    let mut held = folder.lock("scheduler")?;
     let config = crate::config::read(&folder)?;
     let shutdown = Shutdown::on_signals()?;
     let node = Node::join(&Domain::for_run(folder.path())?, "scheduler", &shutdown)?;
-    serve(&folder, config, &node)?;
+    serve(&folder, config, &node, &mut held)?;
     info!("told to stop");
     Ok(())
 }
 
 /// Answers reports until the node's shutdown is requested.
-fn serve(folder: &Folder, config: ScheduleConfig, node: &Node) -> Result<()> {
+fn serve(folder: &Folder, config: ScheduleConfig, node: &Node, held: &mut Lock) -> Result<()> {
     let mut reports =
         RewardSubscriber::new(node).context("opening the stream of reward reports")?;
     let mut directives =
@@ -43,6 +43,7 @@ fn serve(folder: &Folder, config: ScheduleConfig, node: &Node) -> Result<()> {
         while let Some(arrival) = reports.receive()? {
             let decision = answer(&mut desk, &arrival, folder)?;
             directives.send(Directive::new(arrival.report.learner, &decision))?;
+            held.at_work();
         }
     }
     Ok(())

@@ -84,7 +84,7 @@ impl Alone {
     }
 
     /// Changes one value of the configuration, before anything is started.
-    pub(crate) fn set(&self, key: &str, value: i64) {
+    pub(crate) fn set(&self, key: &str, value: impl Into<toml::Value>) {
         let mut config = self.folder.config().expect("a configuration");
         config.put(key, value, "the test");
         config
@@ -273,6 +273,36 @@ pub(crate) fn holder(run: &Path, role: &str) -> Option<Pid> {
 pub(crate) fn without_timing(mut line: Value) -> Value {
     line.as_object_mut().expect("a record").remove("timing");
     line
+}
+
+/// Memory of a process that belongs to no file, bytes.
+pub(crate) fn own_memory(pid: Pid) -> u64 {
+    let path = format!("/proc/{}/status", pid.as_raw_pid());
+    let status = fs::read_to_string(path).expect("the process is alive");
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("RssAnon:"));
+    let kilobytes = line.and_then(|line| line.split_whitespace().next());
+    1024 * kilobytes
+        .and_then(|number| number.parse::<u64>().ok())
+        .expect("a number of kB")
+}
+
+/// An environment variable that lengthens a test, or what is enough beside all others.
+pub(crate) fn length(variable: &str, short: f64) -> f64 {
+    let given = std::env::var(variable).ok();
+    given.map_or(short, |given| given.parse().expect("a number"))
+}
+
+/// Whether a sandbox of the kernel was refused: a test that needs one can then not be held.
+pub(crate) fn has_no_namespaces(said: &str) -> bool {
+    let refused = said.contains("unshare:") || said.contains("mount:");
+    // The message says which.
+    assert!(
+        !refused || said.contains("ermitted") || said.contains("denied"),
+        "{said}"
+    );
+    refused
 }
 
 /// The bytes of a file, or a panic that names it.

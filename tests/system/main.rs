@@ -6,10 +6,16 @@
 #![allow(missing_docs)]
 
 mod bad_input;
+mod disk;
+mod elastic;
+mod faults;
 mod group;
 mod harness;
+mod isolation;
 mod licences;
 mod pair;
+mod pressure;
 mod repeat;
 mod schedule;
+mod soak;
 mod watch;

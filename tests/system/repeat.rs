@@ -1,6 +1,8 @@
 //! One seed, lock-step: the same bits on every run, whoever is faster.
 
-use crate::harness::{Runs, bytes, metrics, without_timing};
+use rustix::process::{Signal, kill_process};
+
+use crate::harness::{Runs, bytes, holder, metrics, until_iteration, without_timing};
 
 #[test]
 fn two_runs_of_one_seed_write_the_same_metrics_and_weights() {
@@ -35,25 +37,108 @@ fn another_seed_is_another_run() {
     assert!(policy("one") != policy("two"), "the seed changes nothing");
 }
 
-#[test]
-fn stopping_and_resuming_changes_no_bit() {
-    let runs = Runs::new();
-    let mut whole = runs.train("whole", &["--actors", "2", "--iterations", "8"]);
-    assert!(whole.end().success(), "{}", whole.stderr.text());
-    let mut first = runs.train("halves", &["--actors", "2", "--iterations", "4"]);
-    assert!(first.end().success(), "{}", first.stderr.text());
-    let mut second = runs.resume("halves", &["--iterations", "8"]);
-    assert!(second.end().success(), "{}", second.stderr.text());
-
+/// Every value that an exact continuation depends on is the same in two runs: metrics, and all of
+/// the checkpoint of iteration `iteration`, networks, optimisers, normalisers, replay, generators and
+/// robots.
+fn assert_same(runs: &Runs, one: &str, other: &str, iteration: u64) {
     let lines = |name: &str| -> Vec<_> {
         metrics(&runs.run(name))
             .into_iter()
             .map(without_timing)
             .collect()
     };
-    for (whole, halves) in lines("whole").iter().zip(&lines("halves")) {
-        assert_eq!(whole, halves);
+    assert_eq!(lines(one).len() as u64, iteration);
+    for (one, other) in lines(one).iter().zip(&lines(other)) {
+        assert_eq!(one, other);
     }
-    let policy = |name: &str| bytes(&runs.run(name).join("checkpoints/00000008/policy.bin"));
-    assert!(policy("whole") == policy("halves"), "weights differ");
+    assert_eq!(lines(other).len() as u64, iteration);
+    let part = |name: &str, file: &str| {
+        let checkpoint = runs.run(name).join(format!("checkpoints/{iteration:08}"));
+        bytes(&checkpoint.join(file))
+    };
+    for file in ["policy.bin", "learning.bin", "actor-0.bin", "actor-1.bin"] {
+        assert!(part(one, file) == part(other, file), "{file} differs");
+    }
+    let shell = |name: &str| {
+        let shell: serde_json::Value =
+            serde_json::from_slice(&part(name, "shell.json")).expect("JSON");
+        let mut shell = shell;
+        shell.as_object_mut().expect("an object").remove("seconds");
+        shell
+    };
+    assert_eq!(shell(one), shell(other));
+}
+
+/// On a busy machine nobody is to go on without the scheduler or an actor: that would be another run.
+const PATIENT: [&str; 4] = [
+    "--set",
+    "run.deadlines.directive_seconds=60",
+    "--set",
+    "run.deadlines.rollout_seconds=60",
+];
+
+#[test]
+fn stopping_and_resuming_changes_no_bit() {
+    let runs = Runs::new();
+    let train = |name: &str, iterations: &str| {
+        let arguments = [&["--actors", "2", "--iterations", iterations], &PATIENT[..]].concat();
+        let mut group = runs.train(name, &arguments);
+        assert!(group.end().success(), "{}", group.stderr.text());
+    };
+    train("whole", "8");
+    train("halves", "4");
+    let mut second = runs.resume("halves", &["--iterations", "8"]);
+    assert!(second.end().success(), "{}", second.stderr.text());
+    assert_same(&runs, "whole", "halves", 8);
+}
+
+/// Kills a whole group in the middle, lets it go on from its last checkpoint, and compares it with one
+/// that nobody disturbed.
+fn killing_changes_no_bit(physics: &str) {
+    const LAST: &str = "60";
+    let runs = Runs::new();
+    let arguments = [
+        &[
+            "--actors",
+            "2",
+            "--set",
+            "checkpoint_every=3",
+            "--set",
+            physics,
+        ],
+        &PATIENT[..],
+    ]
+    .concat();
+    let limited = [&arguments[..], &["--iterations", LAST]].concat();
+    let mut whole = runs.train("whole", &limited);
+    assert!(whole.end().success(), "{}", whole.stderr.text());
+
+    let mut killed = runs.train("killed", &limited);
+    let run = runs.run("killed");
+    until_iteration(&run, 7);
+    // The supervisor first: it would start the others again.
+    let roles = ["learner", "actor-0", "actor-1", "scheduler"];
+    let others: Vec<_> = roles.iter().filter_map(|role| holder(&run, role)).collect();
+    killed.signal(Signal::KILL);
+    for pid in others {
+        // Told to end by the supervisor's death, it may have ended.
+        let _ = kill_process(pid, Signal::KILL);
+    }
+    killed.end();
+    let reached = metrics(&run).len();
+    assert!(reached < 60, "killed too late: iteration {reached}");
+
+    let mut resumed = runs.resume("killed", &["--iterations", LAST]);
+    assert!(resumed.end().success(), "{}", resumed.stderr.text());
+    assert_same(&runs, "whole", "killed", 60);
+}
+
+#[test]
+fn killing_the_whole_group_and_resuming_changes_no_bit() {
+    killing_changes_no_bit("physics=rapier");
+}
+
+#[test]
+fn nor_does_it_with_batched_physics() {
+    killing_changes_no_bit("physics=batched");
 }

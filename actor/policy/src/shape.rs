@@ -55,6 +55,25 @@ impl Shape {
             .map_or(SIGMA.end, |layer| layer.bias.end)
     }
 
+    /// Whether a flat vector of `numbers` numbers is one of this shape, however absurd the shape.
+    pub fn fits(&self, numbers: usize) -> bool {
+        // Every unit has a bias, so no layer of a vector is wider than the vector is long.
+        let possible = |width: &usize| (1..=numbers).contains(width);
+        let widths: Vec<usize> = [INPUTS]
+            .into_iter()
+            .chain(self.hidden.iter().copied())
+            .chain([OUTPUTS])
+            .collect();
+        self.hidden.iter().all(possible)
+            && widths
+                .windows(2)
+                .try_fold(SIGMA.end, |sum, pair| {
+                    sum.checked_add(pair[0].checked_mul(pair[1])?)?
+                        .checked_add(pair[1])
+                })
+                .is_some_and(|sum| sum == numbers)
+    }
+
     /// Never: even a linear policy has weights.
     pub fn is_empty(&self) -> bool {
         false
@@ -88,6 +107,16 @@ mod tests {
         assert_eq!(Shape::new(&[]).len(), 187 + 1909);
         // 82·4 + 4 = 332, 4·23 + 23 = 115
         assert_eq!(Shape::new(&[4]).len(), 187 + 332 + 115);
+    }
+
+    #[test]
+    fn a_shape_fits_its_own_length_and_no_other() {
+        let shape = Shape::new(&[4, 3]);
+        assert!(shape.fits(shape.len()) && !shape.fits(shape.len() + 1));
+        assert!(Shape::new(&[]).fits(187 + 1909));
+        let most = u32::MAX as usize;
+        assert!(!Shape::new(&[most; 6]).fits(2_000));
+        assert!(!Shape::new(&[0]).fits(187 + 23));
     }
 
     #[test]

@@ -16,11 +16,14 @@ use tokio::sync::mpsc::UnboundedSender;
 
 use crate::failure::usage;
 
-/// A program that lived less is counted as having died on the way up.
+/// A program that lived less has lived briefly.
 const BRIEF: Duration = Duration::from_secs(10);
 
-/// So many deaths in a row on the way up, and it is given up.
-const MOST_BRIEF_LIVES: u32 = 5;
+/// So many brief lives in a row without any work done, and it is given up.
+const MOST_IDLE_LIVES: u32 = 5;
+
+/// So many brief lives in a row, and it is given up whatever it did in them.
+const MOST_BRIEF_LIVES: u32 = 40;
 
 /// What a death means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +47,7 @@ pub(crate) struct Child {
     pub(crate) arguments: Vec<OsString>,
     pub(crate) restarts: u32,
     state: State,
-    brief_lives: u32,
+    lives: Lives,
     words: UnboundedSender<Words>,
 }
 
@@ -55,9 +58,29 @@ enum State {
     },
     Running {
         process: tokio::process::Child,
+        pid: u32,
         since: Instant,
     },
     Ended,
+}
+
+/// Brief lives in a row, the last one included if it was brief.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Lives {
+    brief: u32,
+    /// Those in a row in which it never came to work.
+    idle: u32,
+}
+
+impl Lives {
+    /// Counts one more.
+    fn after(self, lived: Duration, worked: bool) -> Self {
+        let brief = lived < BRIEF;
+        Self {
+            brief: if brief { self.brief + 1 } else { 0 },
+            idle: if brief && !worked { self.idle + 1 } else { 0 },
+        }
+    }
 }
 
 impl Child {
@@ -75,7 +98,7 @@ impl Child {
             arguments,
             restarts: 0,
             state: State::Waiting { until },
-            brief_lives: 0,
+            lives: Lives::default(),
             words,
         }
     }
@@ -109,28 +132,34 @@ impl Child {
             });
         }
         self.state = State::Running {
+            pid: process.id().unwrap_or_default(),
             process,
             since: now,
         };
         Ok(())
     }
 
-    /// Looks whether it has died since the last look, and how.
-    pub(crate) fn died(&mut self, now: Instant) -> Result<Option<(ExitStatus, Verdict)>> {
-        let State::Running { process, since } = &mut self.state else {
+    /// Looks whether it has died since the last look, and how. `worked` says whether the process of a
+    /// role has come to work.
+    pub(crate) fn died(
+        &mut self,
+        now: Instant,
+        worked: impl Fn(&str, u32) -> bool,
+    ) -> Result<Option<(ExitStatus, Verdict)>> {
+        let State::Running {
+            process,
+            pid,
+            since,
+        } = &mut self.state
+        else {
             return Ok(None);
         };
         let waited = process.try_wait();
         let Some(status) = waited.with_context(|| format!("waiting for {}", self.role))? else {
             return Ok(None);
         };
-        let lived = now - *since;
-        self.brief_lives = if lived < BRIEF {
-            self.brief_lives + 1
-        } else {
-            1
-        };
-        let verdict = verdict(status, lived, self.brief_lives, self.restarts);
+        self.lives = self.lives.after(now - *since, worked(&self.role, *pid));
+        let verdict = verdict(status, self.lives, self.restarts);
         self.state = match verdict {
             Verdict::Restart(after) => State::Waiting { until: now + after },
             Verdict::Done | Verdict::GiveUp => State::Ended,
@@ -171,17 +200,18 @@ impl Child {
     }
 }
 
-/// What a death means. `brief_lives` counts this one if it was brief, `restarts` those before.
-fn verdict(status: ExitStatus, lived: Duration, brief_lives: u32, restarts: u32) -> Verdict {
+/// What a death means. `lives` counts this one, `restarts` those before.
+fn verdict(status: ExitStatus, lives: Lives, restarts: u32) -> Verdict {
     if status.success() {
         return Verdict::Done;
     }
     // A first start that ends with an ordinary failure has said what is wrong; it would say it again.
-    let refused = matches!(status.code(), Some(1 | 2)) && lived < BRIEF && restarts == 0;
-    if refused || brief_lives >= MOST_BRIEF_LIVES {
+    let refused = matches!(status.code(), Some(1 | 2)) && lives.idle > 0 && restarts == 0;
+    if refused || lives.idle >= MOST_IDLE_LIVES || lives.brief >= MOST_BRIEF_LIVES {
         return Verdict::GiveUp;
     }
-    let doublings = brief_lives.saturating_sub(1).min(5);
+    // Who has worked is missed, and comes back at once.
+    let doublings = lives.idle.saturating_sub(1).min(5);
     Verdict::Restart(Duration::from_millis(100 << doublings))
 }
 
@@ -228,9 +258,14 @@ mod tests {
         ExitStatus::from_raw(code << 8)
     }
 
+    /// So many lives of this length, one after the other, with work done in them or not.
+    fn lives(count: u32, lived: Duration, worked: bool) -> Lives {
+        (0..count).fold(Lives::default(), |lives, _| lives.after(lived, worked))
+    }
+
     #[test]
-    fn a_killed_program_comes_back_at_once_and_then_less_and_less_readily() {
-        let again = |brief_lives| verdict(killed(), SHORT, brief_lives, brief_lives - 1);
+    fn who_never_comes_to_work_comes_back_less_and_less_readily() {
+        let again = |count| verdict(killed(), lives(count, SHORT, false), count - 1);
         assert_eq!(again(1), Verdict::Restart(Duration::from_millis(100)));
         assert_eq!(again(2), Verdict::Restart(Duration::from_millis(200)));
         assert_eq!(again(4), Verdict::Restart(Duration::from_millis(800)));
@@ -238,19 +273,37 @@ mod tests {
     }
 
     #[test]
+    fn who_works_comes_back_at_once_however_often_it_is_killed() {
+        let at_once = Verdict::Restart(Duration::from_millis(100));
+        for count in [1, 5, 39] {
+            let lives = lives(count, SHORT, true);
+            assert_eq!(verdict(killed(), lives, count - 1), at_once, "{count}");
+        }
+        // Unless every one of very many lives was brief.
+        assert_eq!(
+            verdict(killed(), lives(40, SHORT, true), 39),
+            Verdict::GiveUp
+        );
+        assert_eq!(verdict(killed(), lives(500, LONG, true), 499), at_once);
+    }
+
+    #[test]
     fn a_first_start_that_says_what_is_wrong_is_not_repeated() {
-        assert_eq!(verdict(failed(1), SHORT, 1, 0), Verdict::GiveUp);
-        assert_eq!(verdict(failed(2), SHORT, 1, 0), Verdict::GiveUp);
+        let first = |status, lived, worked| verdict(status, lives(1, lived, worked), 0);
+        assert_eq!(first(failed(1), SHORT, false), Verdict::GiveUp);
+        assert_eq!(first(failed(2), SHORT, false), Verdict::GiveUp);
         // A panic is a bug, and may be one of chance.
-        assert_ne!(verdict(failed(101), SHORT, 1, 0), Verdict::GiveUp);
-        // Long after the start, the same failure is an accident.
-        assert_ne!(verdict(failed(1), LONG, 1, 0), Verdict::GiveUp);
-        assert_ne!(verdict(failed(1), SHORT, 1, 1), Verdict::GiveUp);
+        assert_ne!(first(failed(101), SHORT, false), Verdict::GiveUp);
+        // After work was done, or long after the start, the same failure is an accident.
+        assert_ne!(first(failed(1), SHORT, true), Verdict::GiveUp);
+        assert_ne!(first(failed(1), LONG, false), Verdict::GiveUp);
+        let again = verdict(failed(1), lives(1, SHORT, false), 1);
+        assert_ne!(again, Verdict::GiveUp);
     }
 
     #[test]
     fn who_ends_well_is_not_started_again() {
-        assert_eq!(verdict(failed(0), SHORT, 1, 0), Verdict::Done);
+        assert_eq!(verdict(failed(0), lives(1, SHORT, false), 0), Verdict::Done);
     }
 
     #[test]

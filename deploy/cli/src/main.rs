@@ -19,6 +19,7 @@ mod play;
 mod plot;
 mod presets;
 mod resolve;
+mod soak;
 mod status;
 mod supervise;
 mod train;
@@ -48,6 +49,7 @@ Examples:
   ampco export walk --out walk-policy             policy.onnx and all that a robot needs
   ampco play walk --html walk.html                a page that plays it
   ampco bench sim                                 how fast this machine simulates
+  ampco soak --kills 500                          kill at random, and see that nothing is lost
 
 A run lives in runs/<name>/: config.toml (every value, defaults included), metrics.jsonl (a line per
 iteration), logs/, checkpoints/. Exit status: 0 done, 1 failed, 2 bad arguments or configuration.";
@@ -71,6 +73,7 @@ enum Command {
     Export(export::Export),
     Play(play::Play),
     Bench(bench::Bench),
+    Soak(soak::Soak),
 }
 
 fn main() -> ExitCode {
@@ -87,6 +90,7 @@ fn main() -> ExitCode {
         Command::Export(export) => export.run(),
         Command::Play(play) => play.run(),
         Command::Bench(bench) => bench.run(),
+        Command::Soak(soak) => soak.run(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

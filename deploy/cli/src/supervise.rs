@@ -19,6 +19,7 @@ use crate::console::Console;
 use crate::figures::{Outlook, Pace, clock, count};
 
 mod ending;
+mod orphans;
 mod stop;
 
 pub(crate) use stop::Stop;
@@ -64,10 +65,7 @@ pub(crate) fn supervise(launch: &Launch<'_>) -> Result<()> {
     runtime.block_on(async {
         let mut stop = Stop::install()?;
         let domain = Domain::for_run(launch.folder.path())?;
-        // A machine that crashed leaves files whose memory is gone.
-        domain
-            .remove()
-            .context("clearing what an earlier group left")?;
+        orphans::clear(launch.folder, &domain).await?;
         let mut group = Group::new(launch, domain)?;
         let reason = group.watch(&mut stop).await;
         group.end(reason, &mut stop).await
@@ -130,7 +128,9 @@ impl<'a> Group<'a> {
     /// One look: who died, who is due, what the metrics say, whether time is up.
     fn look(&mut self, now: Instant) -> Result<Option<Reason>> {
         for index in 0..self.children.len() {
-            let Some((status, verdict)) = self.children[index].died(now)? else {
+            let folder = self.launch.folder;
+            let worked = |role: &str, pid| folder.has_worked(role, pid);
+            let Some((status, verdict)) = self.children[index].died(now, worked)? else {
                 continue;
             };
             let child = &mut self.children[index];

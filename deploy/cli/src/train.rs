@@ -40,13 +40,15 @@ pub(crate) struct Train {
     /// Set one value of the configuration, as in ppo.epochs=4 or seed=7; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Go on from the last checkpoint of --run, or of the newest run
+    /// Go on from the last checkpoint of --run, or of the newest run; without one, from its start
     #[arg(long)]
     resume: bool,
 }
 
 impl Train {
     pub(crate) fn run(&self) -> Result<()> {
+        // A soak starts us as its child, and takes us along when it ends.
+        protocol::end_with_supervisor()?;
         let (folder, config, resolved) = if self.resume {
             self.resumed()?
         } else {
@@ -75,7 +77,7 @@ impl Train {
             folder: &folder,
             run: &resolved.run,
             fleet: &resolved.fleet,
-            resume: self.resume,
+            resume: !folder.checkpoints().list().is_empty(),
         })
     }
 
@@ -105,7 +107,7 @@ impl Train {
     fn resumed(&self) -> Result<(Folder, Config, Resolved)> {
         let folder = self.place.find(self.run.as_deref())?;
         if folder.checkpoints().list().is_empty() {
-            bail!("run {} has no checkpoint to resume from", folder.name());
+            say("there is no checkpoint yet: the run begins anew");
         }
         if self.preset.is_some() {
             say("--preset is passed over: a resumed run keeps its own configuration (see --set)");

@@ -27,7 +27,23 @@ pub struct Checkpoint {
     pub iteration: u64,
     /// The owner's description of the networks' shapes.
     pub shape: String,
+    /// How good its owner finds it.
+    pub score: Option<f64>,
     parts: BTreeMap<String, Vec<u8>>,
+    awaited: Vec<String>,
+}
+
+/// What is written as a checkpoint.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Contents<'a> {
+    /// The owner's description of the networks' shapes.
+    pub shape: &'a str,
+    /// Name and bytes of each part.
+    pub parts: &'a [(&'a str, &'a [u8])],
+    /// Files that other processes are about to attach: with them it is whole.
+    pub awaited: &'a [String],
+    /// How good it is, the more the better; the best is kept for good.
+    pub score: Option<f64>,
 }
 
 impl Checkpoint {
@@ -57,9 +73,16 @@ impl Checkpoint {
         Ok(Self {
             iteration: manifest.iteration,
             shape: manifest.shape,
+            score: manifest.score,
             parts,
+            awaited: manifest.awaited,
         })
     }
+}
+
+/// Name of the file that an actor attaches.
+pub fn robots_of(actor: u32) -> String {
+    format!("actor-{actor}.bin")
 }
 
 /// The checkpoints of one run: `checkpoints/<iteration:08>/`.
@@ -96,19 +119,33 @@ impl Checkpoints {
         iterations
     }
 
-    /// Writes a checkpoint whole or not at all; one of the same iteration is replaced.
-    ///
-    /// # Panics
-    /// If a part's name is not a plain file name.
+    /// Writes a checkpoint of parts alone, see [`Checkpoints::write_contents`].
     pub fn write(
         &self,
         iteration: u64,
         shape: &str,
         parts: &[(&str, &[u8])],
     ) -> Result<PathBuf, CheckpointError> {
+        let contents = Contents {
+            shape,
+            parts,
+            ..Contents::default()
+        };
+        self.write_contents(iteration, &contents)
+    }
+
+    /// Writes a checkpoint whole or not at all; one of the same iteration is replaced.
+    ///
+    /// # Panics
+    /// If a part's name is not a plain file name.
+    pub fn write_contents(
+        &self,
+        iteration: u64,
+        contents: &Contents<'_>,
+    ) -> Result<PathBuf, CheckpointError> {
         let path = self.path(iteration);
         let draft = self.folder.join(format!(".{iteration:08}.new"));
-        let written = write_draft(&draft, iteration, shape, parts).and_then(|()| {
+        let written = write_draft(&draft, iteration, contents).and_then(|()| {
             // Rename cannot replace a folder with something in it. Between the two renames there
             // is no checkpoint of this iteration, but the older ones are all there.
             let aside = self.folder.join(format!(".{iteration:08}.old"));
@@ -138,6 +175,48 @@ impl Checkpoints {
         }
     }
 
+    /// Opens the newest that nothing is missing of, and which must be of this shape: what others were
+    /// to attach when they were killed may never have come. Where none is whole, the newest is
+    /// opened; a newest that is damaged is refused as by [`Checkpoints::open_newest`].
+    pub fn open_whole(&self, shape: &str) -> Result<Checkpoint, CheckpointError> {
+        let newest = self.open_newest(shape)?;
+        if self.is_whole(&newest) {
+            return Ok(newest);
+        }
+        let older = self.list().into_iter().rev();
+        let whole = older
+            .filter(|at| *at < newest.iteration)
+            .filter_map(|at| self.inspect(at, shape).ok())
+            .find(|checkpoint| self.is_whole(checkpoint));
+        Ok(whole.unwrap_or(newest))
+    }
+
+    /// Whether all that others were to attach to a checkpoint is there and as it was written.
+    pub fn is_whole(&self, checkpoint: &Checkpoint) -> bool {
+        let there =
+            |name: &String| matches!(self.attachment(checkpoint.iteration, name), Ok(Some(_)));
+        checkpoint.awaited.iter().all(there)
+    }
+
+    /// The iteration of the newest that is whole, whatever its shape.
+    pub fn newest_whole(&self) -> Option<u64> {
+        let newest_first = self.list().into_iter().rev();
+        newest_first
+            .filter_map(|at| Checkpoint::open(&self.path(at)).ok())
+            .find(|checkpoint| self.is_whole(checkpoint))
+            .map(|checkpoint| checkpoint.iteration)
+    }
+
+    /// The iteration of the one with the highest score; of equals the oldest.
+    pub fn best(&self) -> Option<u64> {
+        let score = |at: u64| Manifest::read(&self.path(at)).ok()?.score;
+        let scored = self.list().into_iter().rev();
+        scored
+            .filter_map(|at| Some((at, score(at)?)))
+            .max_by(|(_, a), (_, b)| a.total_cmp(b))
+            .map(|(at, _)| at)
+    }
+
     /// Opens the one of an iteration, which must be of this shape.
     pub fn open(&self, iteration: u64, shape: &str) -> Result<Checkpoint, CheckpointError> {
         self.inspect(iteration, shape)
@@ -154,11 +233,16 @@ impl Checkpoints {
             })
     }
 
-    /// Removes all but the `keep` newest, and drafts that a crash left.
+    /// Removes all but the `keep` newest and the best, and drafts that a crash left.
     pub fn prune(&self, keep: usize) -> Result<(), CheckpointError> {
         let iterations = self.list();
+        let best = self.best();
         let old = &iterations[..iterations.len().saturating_sub(keep)];
-        let mut unwanted: Vec<PathBuf> = old.iter().map(|at| self.path(*at)).collect();
+        let mut unwanted: Vec<PathBuf> = old
+            .iter()
+            .filter(|at| Some(**at) != best)
+            .map(|at| self.path(*at))
+            .collect();
         if let Ok(entries) = fs::read_dir(&self.folder) {
             let hidden = |path: &PathBuf| {
                 path.file_name()
@@ -172,6 +256,16 @@ impl Checkpoints {
             );
         }
         for path in unwanted {
+            remove_folder(&path).map_err(|source| CheckpointError::Io { path, source })?;
+        }
+        Ok(())
+    }
+
+    /// Removes those of later iterations: a run that goes on from an earlier one will write them anew,
+    /// and until then they must not pass for the newest.
+    pub fn forget_after(&self, iteration: u64) -> Result<(), CheckpointError> {
+        let later = self.list().into_iter().filter(|at| *at > iteration);
+        for path in later.map(|at| self.path(at)) {
             remove_folder(&path).map_err(|source| CheckpointError::Io { path, source })?;
         }
         Ok(())
@@ -222,21 +316,16 @@ impl Checkpoints {
     }
 }
 
-fn write_draft(
-    draft: &Path,
-    iteration: u64,
-    shape: &str,
-    parts: &[(&str, &[u8])],
-) -> io::Result<()> {
+fn write_draft(draft: &Path, iteration: u64, contents: &Contents<'_>) -> io::Result<()> {
     remove_folder(draft)?;
     fs::create_dir_all(draft)?;
-    let mut written = Vec::with_capacity(parts.len());
-    for (name, bytes) in parts {
+    let mut written = Vec::with_capacity(contents.parts.len());
+    for (name, bytes) in contents.parts {
         assert!(is_part_name(name), "{name:?} is not a plain file name");
         replace::write_durably(&draft.join(name), bytes)?;
         written.push(Part::of(name, bytes));
     }
-    let text = serde_json::to_vec_pretty(&Manifest::new(iteration, shape, written))?;
+    let text = serde_json::to_vec_pretty(&Manifest::new(iteration, contents, written))?;
     replace::write_durably(&draft.join(manifest::FILE), &text)?;
     replace::sync_folder(draft)
 }

@@ -1,12 +1,8 @@
-//! `runs/<name>/`: where things are, and who is alive in it.
-//!
-//! Aliveness is an advisory lock on a file, not a process id in it: the system releases the lock
-//! when the process ends, however it ends, so a crash leaves nothing that must be cleaned.
+//! `runs/<name>/`: where things are. Who is alive in it is told by [`crate::roles`].
 
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Read, Seek, Write};
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 use crate::checkpoint::Checkpoints;
 use crate::config::{Config, ConfigError};
@@ -55,13 +51,6 @@ pub enum FolderError {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Folder {
     path: PathBuf,
-}
-
-/// A role held in a run, for as long as this value or its process lives.
-#[derive(Debug)]
-#[must_use = "the role is given up when this is dropped"]
-pub struct Lock {
-    _file: File,
 }
 
 impl Folder {
@@ -143,101 +132,6 @@ impl Folder {
     pub fn config(&self) -> Result<Config, ConfigError> {
         Config::read(&self.config_path())
     }
-
-    /// Takes a role (`learner`, `scheduler`, `actor-0`) or says who holds it.
-    pub fn lock(&self, role: &str) -> Result<Lock, FolderError> {
-        // `holder` takes the lock for a moment to look; that must not turn a starting process away.
-        let patience = Instant::now() + Duration::from_millis(250);
-        loop {
-            match self.try_lock(role)? {
-                Some(lock) => return Ok(lock),
-                None if Instant::now() < patience => std::thread::sleep(Duration::from_millis(5)),
-                None => {
-                    return Err(FolderError::Held {
-                        run: self.name(),
-                        role: role.to_owned(),
-                        pid: self.written_pid(role),
-                    });
-                }
-            }
-        }
-    }
-
-    /// Takes the free role `actor-<index>` with the lowest index from `first` on, and says which.
-    pub fn lock_free_actor(&self, first: u32) -> Result<(u32, Lock), FolderError> {
-        for index in first.. {
-            if let Some(lock) = self.try_lock(&format!("actor-{index}"))? {
-                return Ok((index, lock));
-            }
-        }
-        unreachable!("more actors than indices")
-    }
-
-    /// The process id of whoever holds a role, or `None` when nobody does.
-    pub fn holder(&self, role: &str) -> Result<Option<String>, FolderError> {
-        let path = self.lock_path(role);
-        if !path.exists() {
-            return Ok(None);
-        }
-        let file = File::open(&path).map_err(|source| io_error(&path, source))?;
-        match file.try_lock_shared() {
-            Ok(()) => Ok(None),
-            Err(TryLockError::WouldBlock) => Ok(Some(self.written_pid(role))),
-            Err(TryLockError::Error(source)) => Err(io_error(&path, source)),
-        }
-    }
-
-    /// Every role that is held now, with its process id, by name.
-    pub fn holders(&self) -> Result<Vec<(String, String)>, FolderError> {
-        let entries = fs::read_dir(&self.path).map_err(|source| io_error(&self.path, source))?;
-        let mut held = Vec::new();
-        for entry in entries.filter_map(Result::ok) {
-            let name = entry.file_name().to_string_lossy().into_owned();
-            if let Some(role) = name.strip_suffix(".lock")
-                && let Some(pid) = self.holder(role)?
-            {
-                held.push((role.to_owned(), pid));
-            }
-        }
-        held.sort();
-        Ok(held)
-    }
-
-    fn try_lock(&self, role: &str) -> Result<Option<Lock>, FolderError> {
-        let path = self.lock_path(role);
-        let opened = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(&path);
-        let mut file = opened.map_err(|source| io_error(&path, source))?;
-        match file.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Ok(None),
-            Err(TryLockError::Error(source)) => return Err(io_error(&path, source)),
-        }
-        // The number is only for the reader of an error; the lock is what counts.
-        let written = file
-            .set_len(0)
-            .and_then(|()| file.rewind())
-            .and_then(|()| writeln!(file, "{}", std::process::id()));
-        written.map_err(|source| io_error(&path, source))?;
-        Ok(Some(Lock { _file: file }))
-    }
-
-    fn lock_path(&self, role: &str) -> PathBuf {
-        self.path.join(format!("{role}.lock"))
-    }
-
-    fn written_pid(&self, role: &str) -> String {
-        let mut text = String::new();
-        let read = File::open(self.lock_path(role)).and_then(|mut f| f.read_to_string(&mut text));
-        match text.trim() {
-            pid if read.is_ok() && !pid.is_empty() => pid.to_owned(),
-            _ => "unknown".to_owned(),
-        }
-    }
 }
 
 /// The names of all runs in a folder, by name; none when the folder does not exist.
@@ -264,7 +158,7 @@ fn check_name(name: &str) -> Result<(), FolderError> {
     }
 }
 
-fn io_error(path: &Path, source: io::Error) -> FolderError {
+pub(crate) fn io_error(path: &Path, source: io::Error) -> FolderError {
     FolderError::Io {
         path: path.to_owned(),
         source,
@@ -279,44 +173,6 @@ mod tests {
         let runs = tempfile::tempdir().unwrap();
         let folder = Folder::create(runs.path(), "walk").unwrap();
         (runs, folder)
-    }
-
-    #[test]
-    fn a_second_learner_is_refused_by_name_and_pid() {
-        let (_runs, folder) = folder();
-        let first = folder.lock("learner").unwrap();
-        let refusal = folder.lock("learner").unwrap_err().to_string();
-        assert!(
-            refusal.contains("run `walk` already has a learner"),
-            "{refusal}"
-        );
-        assert!(
-            refusal.contains(&std::process::id().to_string()),
-            "{refusal}"
-        );
-        drop(first);
-        let _second = folder.lock("learner").unwrap();
-    }
-
-    #[test]
-    fn actors_get_the_lowest_free_index() {
-        let (_runs, folder) = folder();
-        let (zero, _held) = folder.lock_free_actor(0).unwrap();
-        let (one, freed) = folder.lock_free_actor(0).unwrap();
-        let (two, _also_held) = folder.lock_free_actor(0).unwrap();
-        assert_eq!((zero, one, two), (0, 1, 2));
-        drop(freed);
-        assert_eq!(folder.lock_free_actor(2).unwrap().0, 3);
-        assert_eq!(folder.lock_free_actor(0).unwrap().0, 1);
-    }
-
-    #[test]
-    fn holders_are_those_alive_and_not_those_that_left_a_file() {
-        let (_runs, folder) = folder();
-        let _learner = folder.lock("learner").unwrap();
-        drop(folder.lock("scheduler").unwrap());
-        let pid = std::process::id().to_string();
-        assert_eq!(folder.holders().unwrap(), [("learner".to_owned(), pid)]);
     }
 
     #[test]

@@ -10,7 +10,8 @@
 //! | `checkpoints/<iteration>/` | everything that an exact continuation needs | learner, actors | [`checkpoint`] |
 //! | `evaluation/<suite>/` | reports and figures | `ampco evaluate` | – |
 //! | `logs/<process>.log` | the events of one process | that process | [`log`] |
-//! | `<role>.lock` | who is alive in this run | that process | [`folder`] |
+//! | `logs/*.rollouts` | what became of every rollout, where `run.journal` asks for it | learner, actors | [`journal`] |
+//! | `<role>.lock` | who is alive in this run | that process | [`roles`] |
 //!
 //! It is separate from the shells because all of them and the command line share it, and it knows neither messages nor
 //! mathematics.
@@ -20,18 +21,21 @@ pub mod checkpoint;
 pub mod config;
 pub mod events;
 pub mod folder;
+pub mod journal;
 pub mod log;
 pub mod metrics;
 pub mod nearest;
+pub mod roles;
 pub mod sections;
 
 mod assignment;
 mod replace;
 
-pub use checkpoint::{Checkpoint, CheckpointError, Checkpoints};
+pub use checkpoint::{Checkpoint, CheckpointError, Checkpoints, Contents};
 pub use config::{Config, ConfigError};
 pub use events::Events;
-pub use folder::{Folder, FolderError, Lock};
+pub use folder::{Folder, FolderError};
 pub use metrics::{Metrics, MetricsError};
 pub use replace::replace_file;
+pub use roles::Lock;
 pub use sections::{Deadlines, FleetConfig, Mode, RunConfig};

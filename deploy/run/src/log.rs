@@ -31,6 +31,8 @@ pub fn init(logs: &Path, process: &str) -> io::Result<()> {
         .with_ansi(false)
         .with_target(false)
         .with_writer(Mutex::new(file))
+        // A full disk would be told on standard error, once for every event.
+        .log_internal_errors(false)
         .with_filter(filter);
     tracing_subscriber::registry()
         .with(to_file)

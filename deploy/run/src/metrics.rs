@@ -2,7 +2,8 @@
 //!
 //! Separate because the learner writes it while others read it: the scheduler rebuilds its state
 //! from it, the command line follows it. A process that dies in the middle of a line leaves it
-//! torn; a reader passes over a torn *last* line, and a writer removes it before going on.
+//! torn; a reader passes over a torn *last* line, and a writer removes it before going on. Lines for
+//! which a full disk has no room wait in memory, and follow when it has.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -39,18 +40,27 @@ pub enum MetricsError {
     },
 }
 
+/// Bytes of lines that wait for room on the disk; what comes after them is lost.
+const WAITING: usize = 16 << 20;
+
 /// The writer's end.
 #[derive(Debug)]
 pub struct Metrics {
     file: File,
     path: PathBuf,
-    line: Vec<u8>,
+    /// Whole lines that are not in the file yet.
+    waiting: Vec<u8>,
+    /// Bytes of the file that are whole lines.
+    length: u64,
+    /// The last write failed: behind `length` there may be half a line.
+    torn: bool,
+    lost: u64,
 }
 
 impl Metrics {
     /// Opens for appending, creating the file; a torn last line is removed.
     pub fn open(path: &Path) -> Result<Self, MetricsError> {
-        let opened = || -> io::Result<File> {
+        let opened = || -> io::Result<(File, u64)> {
             let mut file = OpenOptions::new()
                 .read(true)
                 .append(true)
@@ -62,26 +72,58 @@ impl Metrics {
             if whole < bytes.len() {
                 file.set_len(whole as u64)?;
             }
-            Ok(file)
+            Ok((file, whole as u64))
         };
+        let (file, length) = opened().map_err(|source| io_error(path, source))?;
         Ok(Self {
-            file: opened().map_err(|source| io_error(path, source))?,
+            file,
             path: path.to_owned(),
-            line: Vec::new(),
+            waiting: Vec::new(),
+            length,
+            torn: false,
+            lost: 0,
         })
     }
 
     /// Appends one record as one line, in one write: it outlives this process at once, and a power
     /// cut from the next [`Metrics::sync`] on.
+    ///
+    /// # Errors
+    /// When the disk refuses. The line then waits and is written by the next call that can.
     pub fn append(&mut self, record: &impl Serialize) -> Result<(), MetricsError> {
-        self.line.clear();
-        let written = serde_json::to_writer(&mut self.line, record)
-            .map_err(io::Error::from)
-            .and_then(|()| {
-                self.line.push(b'\n');
-                self.file.write_all(&self.line)
-            });
+        let before = self.waiting.len();
+        let line = serde_json::to_writer(&mut self.waiting, record);
+        if let Err(error) = line {
+            self.waiting.truncate(before);
+            return Err(io_error(&self.path, error.into()));
+        }
+        self.waiting.push(b'\n');
+        if self.waiting.len() > WAITING {
+            self.waiting.truncate(before);
+            self.lost += 1;
+        }
+        let written = self.write();
         written.map_err(|source| io_error(&self.path, source))
+    }
+
+    /// Lines that were given up because too many waited already.
+    pub fn lost(&self) -> u64 {
+        self.lost
+    }
+
+    /// Writes what waits, all or nothing.
+    fn write(&mut self) -> io::Result<()> {
+        if self.torn {
+            self.file.set_len(self.length)?;
+            self.torn = false;
+        }
+        if let Err(error) = self.file.write_all(&self.waiting) {
+            self.torn = self.file.set_len(self.length).is_err();
+            return Err(error);
+        }
+        self.length += self.waiting.len() as u64;
+        self.waiting.clear();
+        Ok(())
     }
 
     /// Waits until everything appended is on the disk; called with each checkpoint.
@@ -134,7 +176,19 @@ pub fn truncate_after(path: &Path, iteration: u64) -> Result<(), MetricsError> {
             kept.push(b'\n');
         }
     }
-    replace::replace_file(path, &kept).map_err(|source| io_error(path, source))
+    let cut = || {
+        if !bytes.starts_with(&kept) {
+            return replace::replace_file(path, &kept);
+        }
+        // The usual case: the end is cut off, for which also a full disk has room.
+        let file = match OpenOptions::new().write(true).open(path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+            file => file?,
+        };
+        file.set_len(kept.len() as u64)?;
+        file.sync_all()
+    };
+    cut().map_err(|source| io_error(path, source))
 }
 
 /// Follows a file that another process writes.

@@ -34,8 +34,11 @@ pub struct RunConfig {
     pub minutes: f64,
     /// Iterations between checkpoints; one more is written whenever the learner stops.
     pub checkpoint_every: u64,
-    /// How many of the newest checkpoints stay on the disk.
+    /// How many of the newest checkpoints stay on the disk, the best beside them.
     pub keep_checkpoints: usize,
+    /// Whether learner and actors write down what became of every single rollout, in
+    /// `logs/*.rollouts`: some 100 bytes each. `ampco soak` asks for it.
+    pub journal: bool,
     /// How long processes wait for one another.
     pub deadlines: Deadlines,
 }
@@ -77,6 +80,7 @@ impl Default for RunConfig {
             minutes: 0.0,
             checkpoint_every: 50,
             keep_checkpoints: 5,
+            journal: false,
             deadlines: Deadlines::default(),
         }
     }

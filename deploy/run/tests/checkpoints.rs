@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use run::checkpoint::{CheckpointError, FORMAT_VERSION, Refusal};
-use run::{Checkpoint, Checkpoints};
+use run::{Checkpoint, Checkpoints, Contents};
 
 const SHAPE: &str = "policy 82-8-23";
 
@@ -197,4 +197,50 @@ fn an_unwritable_folder_is_an_error_and_leaves_the_others() {
         .write(1, SHAPE, &[("a", b"b")])
         .unwrap_err();
     assert!(matches!(error, CheckpointError::Io { .. }), "{error}");
+}
+
+/// A checkpoint of one part, of this score, for which `actor-0.bin` is awaited.
+fn awaiting(checkpoints: &Checkpoints, iteration: u64, score: f64) {
+    let contents = Contents {
+        shape: SHAPE,
+        parts: &[("actor.bin", b"weights")],
+        awaited: &["actor-0.bin".to_owned()],
+        score: Some(score),
+    };
+    checkpoints.write_contents(iteration, &contents).unwrap();
+}
+
+#[test]
+fn what_others_never_attached_is_passed_over_for_an_older_one_that_is_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let checkpoints = Checkpoints::new(folder.path().join("checkpoints"));
+    let opened = || checkpoints.open_whole(SHAPE).unwrap().iteration;
+    awaiting(&checkpoints, 10, 0.0);
+    assert_eq!(opened(), 10, "rather one without its actors than none");
+    checkpoints.attach(10, "actor-0.bin", b"robots").unwrap();
+    awaiting(&checkpoints, 20, 0.0);
+    assert_eq!(opened(), 10);
+    checkpoints.attach(20, "actor-0.bin", b"robots").unwrap();
+    assert_eq!(opened(), 20);
+    assert_eq!(checkpoints.newest_whole(), Some(20));
+    // Half an attachment is none.
+    let file = checkpoints.path(20).join("actor-0.bin");
+    let bytes = fs::read(&file).unwrap();
+    fs::write(&file, &bytes[..bytes.len() - 1]).unwrap();
+    assert_eq!(opened(), 10);
+    checkpoints.forget_after(10).unwrap();
+    assert_eq!(checkpoints.list(), [10]);
+}
+
+#[test]
+fn the_best_is_kept_beside_the_newest() {
+    let folder = tempfile::tempdir().unwrap();
+    let checkpoints = Checkpoints::new(folder.path().join("checkpoints"));
+    assert_eq!(checkpoints.best(), None);
+    for (iteration, score) in [(10, 1.0), (20, 3.0), (30, 3.0), (40, -2.0), (50, f64::NAN)] {
+        awaiting(&checkpoints, iteration, score);
+        checkpoints.prune(2).unwrap();
+    }
+    assert_eq!(checkpoints.best(), Some(20), "of equals the oldest");
+    assert_eq!(checkpoints.list(), [20, 40, 50]);
 }

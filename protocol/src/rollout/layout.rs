@@ -86,6 +86,19 @@ macro_rules! blocks {
         }
 
         impl<'a> RolloutView<'a> {
+            /// The first number that is NaN or infinite, time-out observations left out.
+            fn not_finite(&self) -> Option<Flaw> {
+                let blocks = [
+                    $( (stringify!($step), self.$step, $step_width), )*
+                    $( (stringify!($once), self.$once, $once_width), )*
+                ];
+                blocks.into_iter().find_map(|(field, numbers, width)| {
+                    let meaningful = field != "timeout_observations";
+                    let index = first_not_finite(numbers).filter(|_| meaningful)?;
+                    Some(Flaw { field, row: index / width, value: numbers[index] })
+                })
+            }
+
             /// The blocks of step `step`, from 0.
             pub fn step(&self, step: usize) -> RolloutStep<'a> {
                 let environments = self.layout.environments;
@@ -143,7 +156,65 @@ blocks! {
     }
 }
 
+/// A number in a rollout that no sound actor sends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flaw {
+    /// Name of its block.
+    pub field: &'static str,
+    /// Its row in the block: step · N + environment, or the environment.
+    pub row: usize,
+    /// Its value.
+    pub value: f32,
+}
+
+impl RolloutView<'_> {
+    /// The first number that cannot be, if there is one: NaN or infinite, an end of an unknown kind, or
+    /// a count of steps below zero.
+    pub fn flaw(&self) -> Option<Flaw> {
+        let named = |field, numbers: &[f32], wrong: fn(f32) -> bool| {
+            let row = numbers.iter().position(|&number| wrong(number))?;
+            let value = numbers[row];
+            Some(Flaw { field, row, value })
+        };
+        self.not_finite()
+            .or_else(|| named("ends", self.ends, |end| ![0.0, 1.0, 2.0].contains(&end)))
+            .or_else(|| named("episode_steps", self.episode_steps, |steps| steps < 0.0))
+            .or_else(|| self.unsound_time_out())
+    }
+
+    /// Time-out observations mean something where an episode timed out.
+    fn unsound_time_out(&self) -> Option<Flaw> {
+        let environments = self.layout.environments;
+        let timed_out = self.ends.iter().enumerate().filter(|(_, end)| **end == 2.0);
+        timed_out
+            .map(|(row, _)| row % environments)
+            .find_map(|row| {
+                let seen = &self.timeout_observations[row * OBSERVATION..][..OBSERVATION];
+                let value = seen[first_not_finite(seen)?];
+                let field = "timeout_observations";
+                Some(Flaw { field, row, value })
+            })
+    }
+}
+
+fn first_not_finite(numbers: &[f32]) -> Option<usize> {
+    // Groups first, without a branch per number, which vectors of the machine do many at a time.
+    const GROUP: usize = 256;
+    let sound = |group: &[f32]| group.iter().fold(true, |sound, x| sound & x.is_finite());
+    let group = numbers.chunks(GROUP).position(|group| !sound(group))?;
+    let rest = &numbers[group * GROUP..];
+    let within = rest.iter().position(|number| !number.is_finite())?;
+    Some(group * GROUP + within)
+}
+
 impl RolloutLayout {
+    /// Numbers in the whole rollout; `None` where no memory could hold so many.
+    pub fn checked_len(&self) -> Option<usize> {
+        let per_environment = self.steps.checked_mul(Self::PER_STEP)?;
+        let per_environment = per_environment.checked_add(Self::ONCE)?;
+        self.environments.checked_mul(per_environment)
+    }
+
     /// Numbers in the whole rollout.
     #[expect(clippy::len_without_is_empty, reason = "a size, not a collection")]
     pub const fn len(&self) -> usize {
@@ -227,6 +298,42 @@ mod tests {
             numbers.iter().all(|&n| n != 0.0),
             "a number without a block"
         );
+    }
+
+    #[test]
+    fn numbers_that_cannot_be_are_found_and_named() {
+        let flaw = |change: fn(&mut RolloutViewMut<'_>)| {
+            let mut numbers = vec![0.0; LAYOUT.len()];
+            change(&mut LAYOUT.view_mut(&mut numbers));
+            let flaw = LAYOUT.view(&numbers).flaw();
+            flaw.map(|flaw| (flaw.field, flaw.row))
+        };
+        assert_eq!(flaw(|_| {}), None);
+        let nan = flaw(|view| view.observations[4 * OBSERVATION + 7] = f32::NAN);
+        assert_eq!(nan, Some(("observations", 4)));
+        let infinite = flaw(|view| view.task_rewards[5] = f32::NEG_INFINITY);
+        assert_eq!(infinite, Some(("task_rewards", 5)));
+        assert_eq!(flaw(|view| view.ends[2] = 3.0), Some(("ends", 2)));
+        let negative = flaw(|view| view.episode_steps[0] = -1.0);
+        assert_eq!(negative, Some(("episode_steps", 0)));
+        // Nothing timed out: these numbers mean nothing.
+        assert_eq!(flaw(|view| view.timeout_observations.fill(f32::NAN)), None);
+        let timed_out = flaw(|view| {
+            view.ends[4] = 2.0; // second step, second environment
+            view.timeout_observations[OBSERVATION] = f32::INFINITY;
+        });
+        assert_eq!(timed_out, Some(("timeout_observations", 1)));
+    }
+
+    #[test]
+    fn sizes_that_no_memory_holds_have_no_length() {
+        let most = u32::MAX as usize;
+        let huge = RolloutLayout {
+            environments: most,
+            steps: most,
+        };
+        assert_eq!(huge.checked_len(), None);
+        assert_eq!(LAYOUT.checked_len(), Some(LAYOUT.len()));
     }
 
     #[test]

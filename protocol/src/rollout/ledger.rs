@@ -61,8 +61,11 @@ impl Ledger {
             page.totals.duplicated += 1;
             return Entry::Duplicate;
         }
-        page.totals.dropped += header.sequence - page.next;
-        page.next = header.sequence + 1;
+        page.totals.dropped = page
+            .totals
+            .dropped
+            .saturating_add(header.sequence - page.next);
+        page.next = header.sequence.saturating_add(1);
         if header.learner != learner || header.policy_version < oldest {
             page.totals.stale += 1;
             return Entry::Stale;
@@ -91,7 +94,7 @@ impl Ledger {
         let pages = self.pages.iter().filter(|((actor, _), _)| wanted(*actor));
         pages.fold(Totals::default(), |sum, (_, page)| Totals {
             received: sum.received + page.totals.received,
-            dropped: sum.dropped + page.totals.dropped,
+            dropped: sum.dropped.saturating_add(page.totals.dropped),
             duplicated: sum.duplicated + page.totals.duplicated,
             stale: sum.stale + page.totals.stale,
         })

@@ -129,7 +129,10 @@ impl Serving {
         let folder = learner.folder.clone();
         Self {
             shutdown,
-            thread: thread::spawn(move || serve(&folder, config(), &node)),
+            thread: thread::spawn(move || {
+                let mut held = folder.lock("scheduler")?;
+                serve(&folder, config(), &node, &mut held)
+            }),
         }
     }
 

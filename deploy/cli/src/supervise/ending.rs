@@ -97,7 +97,7 @@ impl Group<'_> {
                 _ = looks.tick() => {
                     let now = Instant::now();
                     for child in &mut self.children {
-                        child.died(now)?;
+                        child.died(now, |_, _| true)?;
                         child.retire();
                     }
                     if self.alive(&meant).is_empty() {

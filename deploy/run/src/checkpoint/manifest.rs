@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::Refusal;
+use super::{Contents, Refusal};
 
 /// The version of the layout below; raised when an older program could no longer read it.
 pub const FORMAT_VERSION: u32 = 1;
@@ -21,6 +21,12 @@ pub(super) struct Manifest {
     pub(super) iteration: u64,
     pub(super) shape: String,
     pub(super) parts: Vec<Part>,
+    /// Files that other processes were to attach.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) awaited: Vec<String>,
+    /// How good the owner finds it; the more the better.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) score: Option<f64>,
     /// CRC32 of this manifest written with a seal of 0.
     seal: u32,
 }
@@ -78,13 +84,16 @@ impl Part {
 }
 
 impl Manifest {
-    pub(super) fn new(iteration: u64, shape: &str, parts: Vec<Part>) -> Self {
+    pub(super) fn new(iteration: u64, contents: &Contents<'_>, parts: Vec<Part>) -> Self {
         let mut manifest = Self {
             format: FORMAT.to_owned(),
             version: FORMAT_VERSION,
             iteration,
-            shape: shape.to_owned(),
+            shape: contents.shape.to_owned(),
             parts,
+            awaited: contents.awaited.to_vec(),
+            // JSON has no other numbers.
+            score: contents.score.filter(|score| score.is_finite()),
             seal: 0,
         };
         manifest.seal = manifest.computed_seal();
@@ -112,7 +121,10 @@ impl Manifest {
             None => return Err(Refusal::Manifest),
         }
         let manifest: Self = serde_json::from_value(any).map_err(|_| Refusal::Manifest)?;
-        let names_stay_inside = manifest.parts.iter().all(|part| is_part_name(&part.name));
+        let parts = manifest.parts.iter().map(|part| &part.name);
+        let names_stay_inside = parts
+            .chain(&manifest.awaited)
+            .all(|name| is_part_name(name));
         if manifest.seal != manifest.computed_seal() || !names_stay_inside {
             return Err(Refusal::Manifest);
         }

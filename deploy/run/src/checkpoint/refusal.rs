@@ -75,7 +75,10 @@ pub enum Refusal {
 
 fn remedy(previous_good: Option<&Path>) -> String {
     match previous_good {
-        Some(path) => format!("the newest good one before it is {}", path.display()),
+        Some(path) => format!(
+            "the newest good one before it is {}: move the refused one away to go on from that",
+            path.display()
+        ),
         None => "no earlier checkpoint is good".to_owned(),
     }
 }

@@ -1,0 +1,268 @@
+//! The account of a run: every rollout that was sent, and what it came to.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{Entry, Key};
+
+/// Most rollouts of one actor that a dying process can take along unread: two in the learner's
+/// buffer, one that it has taken out, one that is being sent.
+const IN_FLIGHT: usize = 4;
+
+/// What all rollouts came to.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Account {
+    /// Rollouts that actors sent.
+    pub sent: u64,
+    /// Learned from, once, by what the run goes on from.
+    pub used: u64,
+    /// Not used, by reason: those of [`super::OUTCOMES`] and [`super::FATES`]; `unread` when learner or
+    /// actor ended before it was read; `rolled_back` when it was learned from and the learner
+    /// killed before its next checkpoint.
+    pub dropped: BTreeMap<String, u64>,
+    /// Learned from twice, or gone without any of these reasons.
+    pub uncounted: u64,
+}
+
+/// What is known of one rollout.
+#[derive(Debug, Default)]
+struct Known {
+    outcome: Option<String>,
+    /// The learner's life, whether it lasts, and the fate, in order.
+    fates: Vec<(usize, bool, String)>,
+}
+
+/// Puts the journals of all processes side by side.
+pub fn account(journals: &[Vec<Entry>]) -> Account {
+    let lives = Lives::of(journals);
+    let mut rollouts: BTreeMap<Key, Known> = BTreeMap::new();
+    let mut sent = BTreeSet::new();
+    for entry in journals.iter().flatten() {
+        match entry {
+            Entry::Sending(key) => {
+                sent.insert(*key);
+            }
+            Entry::Sent(key, outcome) => {
+                rollouts.entry(*key).or_default().outcome = Some(outcome.clone());
+            }
+            Entry::Received(learner, iteration, key, fate) => {
+                let life = lives.number(*learner);
+                let lasts = lives.lasts(life, *iteration);
+                let known = rollouts.entry(*key).or_default();
+                known.fates.push((life, lasts, fate.clone()));
+            }
+            Entry::Begun(..) => {}
+        }
+    }
+    let mut account = Account {
+        sent: sent.len() as u64,
+        ..Account::default()
+    };
+    // What was received and never sent cannot be: the line is written before the send.
+    account.uncounted += rollouts.keys().filter(|key| !sent.contains(key)).count() as u64;
+    let mut unread: BTreeMap<Gap, usize> = BTreeMap::new();
+    for key in &sent {
+        match rollouts.get(key).and_then(Known::reason) {
+            Some(Reason::Used) => account.used += 1,
+            Some(Reason::Twice) => account.uncounted += 1,
+            Some(Reason::Dropped(reason)) => account.drop(reason, 1),
+            None => *unread.entry(Gap::around(*key, &rollouts)).or_default() += 1,
+        }
+    }
+    for (gap, count) in unread {
+        let excused = count.min(gap.room(lives.0.len()));
+        account.drop("unread", excused as u64);
+        account.uncounted += (count - excused) as u64;
+    }
+    account
+}
+
+impl Account {
+    fn drop(&mut self, reason: &str, count: u64) {
+        if count > 0 {
+            *self.dropped.entry(reason.to_owned()).or_default() += count;
+        }
+    }
+}
+
+enum Reason<'a> {
+    Used,
+    Twice,
+    Dropped(&'a str),
+}
+
+impl Known {
+    /// What it came to; `None` when it was sent and nobody has read it.
+    fn reason(&self) -> Option<Reason<'_>> {
+        let mut uses = self.fates.iter().filter(|(.., fate)| fate == "used");
+        match (uses.next(), uses.next()) {
+            (Some(_), Some(_)) => return Some(Reason::Twice),
+            (Some((_, true, _)), None) => return Some(Reason::Used),
+            (Some(_), None) => return Some(Reason::Dropped("rolled_back")),
+            (None, _) => {}
+        }
+        if let Some((.., fate)) = self.fates.first() {
+            return Some(Reason::Dropped(fate));
+        }
+        match self.outcome.as_deref() {
+            None | Some("delivered") => None,
+            Some(outcome) => Some(Reason::Dropped(outcome)),
+        }
+    }
+}
+
+/// The learners of a run, one after the other: number, and iterations done when it began.
+struct Lives(Vec<(u64, u64)>);
+
+impl Lives {
+    fn of(journals: &[Vec<Entry>]) -> Self {
+        let begun = journals.iter().flatten().filter_map(|entry| match entry {
+            Entry::Begun(learner, iteration) => Some((*learner, *iteration)),
+            _ => None,
+        });
+        Self(begun.collect())
+    }
+
+    fn number(&self, learner: u64) -> usize {
+        let found = self.0.iter().position(|(number, _)| *number == learner);
+        found.unwrap_or(0)
+    }
+
+    /// Whether what a life did in an iteration was there when all later ones began.
+    fn lasts(&self, life: usize, iteration: u64) -> bool {
+        self.0
+            .iter()
+            .skip(life + 1)
+            .all(|(_, begun)| *begun >= iteration)
+    }
+}
+
+/// Where rollouts went missing: an actor's life, and between which learners' lives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Gap {
+    actor: u32,
+    life: u64,
+    before: Option<usize>,
+    after: Option<usize>,
+}
+
+impl Gap {
+    fn around(key: Key, rollouts: &BTreeMap<Key, Known>) -> Self {
+        let (actor, life, _) = key;
+        let learner = |known: &Known| known.fates.first().map(|(life, ..)| *life);
+        Self {
+            actor,
+            life,
+            before: rollouts
+                .range((actor, life, 0)..key)
+                .rev()
+                .find_map(|(_, known)| learner(known)),
+            after: rollouts
+                .range(key..=(actor, life, u64::MAX))
+                .find_map(|(_, known)| learner(known)),
+        }
+    }
+
+    /// How many may have been lost in it: what was under way at each end of a learner in between, or
+    /// at the actor's own. Within one learner's life a stream loses nothing.
+    fn room(&self, lives: usize) -> usize {
+        let from = self.before.unwrap_or(0);
+        let ends = match self.after {
+            Some(after) => after.saturating_sub(from),
+            None => lives.saturating_sub(from).max(1),
+        };
+        ends * IN_FLIGHT
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An actor that sends 0 to `count` − 1, all delivered.
+    fn sends(count: u64) -> Vec<Entry> {
+        (0..count)
+            .flat_map(|number| {
+                let key = (0, 100, number);
+                [
+                    Entry::Sending(key),
+                    Entry::Sent(key, "delivered".to_owned()),
+                ]
+            })
+            .collect()
+    }
+
+    fn used(learner: u64, iteration: u64, number: u64) -> Entry {
+        Entry::Received(learner, iteration, (0, 100, number), "used".to_owned())
+    }
+
+    fn dropped(account: &Account, reason: &str) -> u64 {
+        account.dropped.get(reason).copied().unwrap_or(0)
+    }
+
+    #[test]
+    fn a_rollout_that_vanishes_while_everyone_lives_is_uncounted() {
+        let learner = vec![Entry::Begun(7, 0), used(7, 1, 0), used(7, 2, 2)];
+        let account = account(&[sends(3), learner]);
+        assert_eq!((account.sent, account.used, account.uncounted), (3, 2, 1));
+        assert!(account.dropped.is_empty());
+    }
+
+    #[test]
+    fn a_killed_learner_takes_along_what_it_has_not_saved_and_what_lies_in_its_buffer() {
+        // Killed in iteration 3 with a checkpoint of 1; rollouts 3 and 4 lay in its buffer.
+        let learner = vec![
+            Entry::Begun(7, 0),
+            used(7, 1, 0),
+            used(7, 2, 1),
+            used(7, 3, 2),
+            Entry::Begun(8, 1),
+            used(8, 2, 5),
+        ];
+        let account = account(&[sends(6), learner]);
+        assert_eq!((account.sent, account.used, account.uncounted), (6, 2, 0));
+        assert_eq!(dropped(&account, "rolled_back"), 2);
+        assert_eq!(dropped(&account, "unread"), 2);
+    }
+
+    #[test]
+    fn no_death_excuses_more_than_was_under_way() {
+        let learner = vec![
+            Entry::Begun(7, 0),
+            used(7, 1, 0),
+            Entry::Begun(8, 1),
+            used(8, 2, 6),
+        ];
+        // 1 to 5 are missing, and four can have been under way.
+        let account = account(&[sends(7), learner]);
+        assert_eq!((dropped(&account, "unread"), account.uncounted), (4, 1));
+    }
+
+    #[test]
+    fn learned_from_twice_is_uncounted_and_a_repetition_that_was_left_is_not() {
+        let again = |fate: &str| Entry::Received(7, 2, (0, 100, 0), fate.to_owned());
+        let learner = |fate| vec![Entry::Begun(7, 0), used(7, 1, 0), again(fate)];
+        let twice = account(&[sends(1), learner("used")]);
+        assert_eq!((twice.used, twice.uncounted), (0, 1));
+        let once = account(&[sends(1), learner("duplicate")]);
+        assert_eq!((once.used, once.uncounted), (1, 0));
+    }
+
+    #[test]
+    fn what_actors_and_learner_give_up_has_its_reason() {
+        let actor = vec![
+            Entry::Sending((0, 100, 0)),
+            Entry::Sent((0, 100, 0), "unheard".to_owned()),
+            Entry::Sending((0, 100, 1)),
+            Entry::Sent((0, 100, 1), "full".to_owned()),
+            Entry::Sending((0, 100, 2)),
+            Entry::Sent((0, 100, 2), "delivered".to_owned()),
+            Entry::Sending((0, 100, 3)), // killed while sending
+        ];
+        let stale = Entry::Received(7, 1, (0, 100, 2), "stale".to_owned());
+        let account = account(&[actor, vec![Entry::Begun(7, 0), stale]]);
+        assert_eq!((account.sent, account.used, account.uncounted), (4, 0, 0));
+        for reason in ["unheard", "full", "stale", "unread"] {
+            assert_eq!(dropped(&account, reason), 1, "{reason}");
+        }
+    }
+}

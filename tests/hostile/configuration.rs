@@ -1,0 +1,153 @@
+//! Configuration files and `--set`.
+
+use amp::{DiscriminatorConfig, ExplorationConfig, PolicyConfig, PpoConfig};
+use ampco::ScheduleConfig;
+use motion::MotionConfig;
+use proptest::collection::vec;
+use proptest::prelude::*;
+use run::{Config, ConfigError, FleetConfig, RunConfig};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use sim::{RandomizationConfig, TaskConfig};
+
+use crate::damage::{blows, damaged};
+use crate::{always, assert_clear};
+
+/// A file with every value of every section, as `ampco train` writes it.
+fn whole() -> String {
+    let mut config = Config::default();
+    config.resolve("run", &RunConfig::default());
+    config.resolve("fleet", &FleetConfig::default());
+    config.resolve("task", &TaskConfig::default());
+    config.resolve("randomization", &RandomizationConfig::default());
+    config.resolve("motion", &MotionConfig::default());
+    config.resolve("policy", &PolicyConfig::default());
+    config.resolve("exploration", &ExplorationConfig::default());
+    config.resolve("ppo", &PpoConfig::default());
+    config.resolve("discriminator", &DiscriminatorConfig::default());
+    config.resolve("scheduler", &ScheduleConfig::default());
+    config.to_toml()
+}
+
+/// Reads all that is in it, as `ampco train` does.
+fn read(config: &Config) -> Result<(), ConfigError> {
+    fn section<T, E>(
+        config: &Config,
+        name: &str,
+        validate: fn(&T) -> Result<(), E>,
+    ) -> Result<(), ConfigError>
+    where
+        T: DeserializeOwned + Default + Serialize,
+        E: std::fmt::Display,
+    {
+        let section = config.checked(name, validate)?;
+        // What was accepted can be written out again.
+        config.clone().resolve(name, &section);
+        Ok(())
+    }
+    config.check_sections(&[
+        "run",
+        "fleet",
+        "task",
+        "randomization",
+        "motion",
+        "policy",
+        "exploration",
+        "ppo",
+        "discriminator",
+        "scheduler",
+    ])?;
+    section(config, "run", RunConfig::validate)?;
+    section(config, "fleet", FleetConfig::validate)?;
+    section(config, "task", TaskConfig::validate)?;
+    section(config, "randomization", RandomizationConfig::validate)?;
+    section(config, "motion", MotionConfig::validate)?;
+    section(config, "policy", PolicyConfig::validate)?;
+    section(config, "exploration", ExplorationConfig::validate)?;
+    section(config, "ppo", PpoConfig::validate)?;
+    section(config, "discriminator", DiscriminatorConfig::validate)?;
+    section(config, "scheduler", ScheduleConfig::validate)
+}
+
+fn read_text(text: &str) {
+    let config = Config::parse(text, "hostile.toml");
+    if let Err(error) = config.and_then(|config| read(&config)) {
+        assert_clear(&error);
+    }
+}
+
+/// Values that are no good in most places.
+fn values() -> impl Strategy<Value = String> {
+    let fixed = [
+        "nan",
+        "inf",
+        "-inf",
+        "0",
+        "-1",
+        "1e308",
+        "-1e-308",
+        "9223372036854775807",
+        "-9223372036854775808",
+        "1",
+        "0.5",
+        "true",
+        "\"\"",
+        "\"walk\"",
+        "[]",
+        "[[]]",
+        "[nan, inf]",
+        "[-1, 0]",
+        "{}",
+        "{ x = 1 }",
+        "1979-05-27T07:32:00Z",
+        "[{ gait = \"walk\", speed = 1e30 }]",
+        "[{ file = \"/dev/null\", fps = 1e-9 }]",
+        "{ amp = { style_weight = nan } }",
+    ];
+    prop_oneof![
+        3 => proptest::sample::select(fixed.to_vec()).prop_map(str::to_owned),
+        1 => any::<f64>().prop_map(|number| format!("{number:?}")),
+        1 => any::<i64>().prop_map(|number| number.to_string()),
+    ]
+}
+
+#[test]
+fn a_damaged_file_is_read_or_refused() {
+    let whole = whole();
+    read(&Config::parse(&whole, "whole").unwrap()).unwrap();
+    always(400, &blows(), |blows| {
+        let bytes = damaged(whole.as_bytes(), &blows);
+        read_text(&String::from_utf8_lossy(&bytes));
+    });
+}
+
+#[test]
+fn any_value_in_any_place_is_accepted_or_refused() {
+    let whole = Config::parse(&whole(), "whole").unwrap();
+    let paths: Vec<String> = whole.paths().map(str::to_owned).collect();
+    let assignments = vec((proptest::sample::select(paths), values()), 1..4);
+    always(600, &assignments, |assignments| {
+        let mut config = whole.clone();
+        for (path, value) in assignments {
+            if let Err(error) = config.set(&format!("{path}={value}")) {
+                assert_clear(&error);
+            }
+        }
+        if let Err(error) = read(&config) {
+            assert_clear(&error);
+        }
+    });
+}
+
+#[test]
+fn any_words_are_read_or_refused() {
+    let marks: Vec<char> = "[]{}=.,\"'#\n\\ax1-_:é∞\u{0}".chars().collect();
+    let words = vec(proptest::sample::select(marks), 0..120);
+    always(1000, &words, |words| {
+        let text: String = words.into_iter().collect();
+        read_text(&text);
+        if let Err(error) = Config::default().set(&text) {
+            assert_clear(&error);
+        }
+    });
+}
