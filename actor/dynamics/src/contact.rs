@@ -65,6 +65,7 @@ pub(crate) struct Touch<'a, L: Lane> {
 }
 
 impl<L: Lane> Contacts<L> {
+    #[inline(always)]
     pub(crate) fn none(token: L::Token) -> Self {
         let zero = L::splat(token, L::Scalar::default());
         let contact = Contact {

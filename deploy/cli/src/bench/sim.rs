@@ -28,6 +28,9 @@ pub(crate) struct SimBench {
     /// Robots in the fleet
     #[arg(long, default_value_t = 64)]
     environments: usize,
+    /// Fleets at once, each on a thread of its own, as actors are processes of their own
+    #[arg(long, default_value_t = 1)]
+    fleets: usize,
     /// Widths of the policy's hidden layers
     #[arg(long, value_delimiter = ',', default_values_t = [256, 128, 64])]
     hidden: Vec<usize>,
@@ -45,17 +48,18 @@ pub(crate) struct SimBench {
 impl SimBench {
     pub(crate) fn run(&self) -> Result<Value> {
         ensure!(
-            self.seconds > 0.0 && self.environments > 0,
-            "give --seconds and --environments above 0"
+            self.seconds > 0.0 && self.environments > 0 && self.fleets > 0,
+            "give --seconds, --environments and --fleets above 0"
         );
         ensure!(
             self.hidden.iter().all(|&width| width > 0),
             "give --hidden widths above 0, for example 256,128,64"
         );
-        let physics = self.measure(None)?;
-        let mut policy = self.policy()?;
-        let acting = self.measure(Some(&mut policy))?;
+        let physics = self.together(None)?;
+        let policy = self.policy()?;
+        let acting = self.together(Some(&policy))?;
         Ok(json!({
+            "control_steps_per_second": physics.per_second(physics.wall) * self.fleets as f64,
             "control_steps_per_second_per_core": physics.per_second(physics.wall),
             "with_inference_per_second_per_core": acting.per_second(acting.wall),
             // On a machine that others use, the time on the core says more than the clock.
@@ -71,6 +75,9 @@ impl SimBench {
             "faults": physics.faults,
             "physics": Physics::from(self.physics),
             "environments": self.environments,
+            "fleets": self.fleets,
+            // What the process grew by, the fleet's rows of a step included.
+            "bytes_per_robot": physics.bytes.map(|bytes| bytes / self.environments),
             "hidden": self.hidden,
             "randomization": !self.plain,
             "physics_hz": 1.0 / sim::world::PHYSICS_STEP,
@@ -95,6 +102,24 @@ impl SimBench {
         Ok(policy)
     }
 
+    /// Every fleet on a thread of its own; the mean of them all.
+    fn together(&self, policy: Option<&Policy>) -> Result<Measured> {
+        let measured: Vec<Result<Measured>> = std::thread::scope(|scope| {
+            let threads: Vec<_> = (0..self.fleets)
+                .map(|_| scope.spawn(|| self.measure(policy.cloned().as_mut())))
+                .collect();
+            threads
+                .into_iter()
+                .map(|thread| thread.join().expect("a measurement does not panic"))
+                .collect()
+        });
+        let mut mean = Measured::default();
+        for one in measured {
+            mean.add(one?);
+        }
+        Ok(mean.over(self.fleets))
+    }
+
     /// Steps a new fleet for the time asked, with a policy or with random actions drawn beforehand.
     fn measure(&self, mut policy: Option<&mut Policy>) -> Result<Measured> {
         let randomization = if self.plain {
@@ -103,6 +128,7 @@ impl SimBench {
             RandomizationConfig::default()
         };
         let n = self.environments;
+        let before = resident_bytes();
         let mut fleet = Fleet::new(
             &TaskConfig {
                 physics: self.physics.into(),
@@ -150,6 +176,9 @@ impl SimBench {
             }
         }
         measured.faults = fleet.faults();
+        measured.bytes = resident_bytes()
+            .zip(before)
+            .map(|(now, before)| now.saturating_sub(before));
         Ok(measured)
     }
 }
@@ -164,12 +193,51 @@ struct Measured {
     inference: f64,
     resets: usize,
     faults: u64,
+    /// Growth of the process's memory; of the whole process, so that only one fleet tells its own.
+    bytes: Option<usize>,
 }
 
 impl Measured {
+    fn add(&mut self, other: Self) {
+        self.steps += other.steps;
+        self.wall += other.wall;
+        self.cpu = match (self.cpu, other.cpu) {
+            (Some(a), Some(b)) => Some(a + b),
+            (None, cpu) | (cpu, None) => cpu,
+        };
+        self.inference += other.inference;
+        self.resets += other.resets;
+        self.faults += other.faults;
+        self.bytes = other.bytes.or(self.bytes);
+    }
+
+    /// The mean of several.
+    fn over(self, fleets: usize) -> Self {
+        let share = fleets as f64;
+        Self {
+            steps: self.steps / fleets,
+            wall: self.wall / share,
+            cpu: self.cpu.map(|cpu| cpu / share),
+            inference: self.inference / share,
+            resets: self.resets / fleets,
+            bytes: self.bytes.filter(|_| fleets == 1),
+            ..self
+        }
+    }
+
     fn per_second(&self, seconds: f64) -> f64 {
         self.steps as f64 / seconds
     }
+}
+
+/// Memory of this process that is in the machine's, if the kernel tells.
+fn resident_bytes() -> Option<usize> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let kilobytes: usize = line.split_whitespace().next()?.parse().ok()?;
+    Some(1024 * kilobytes)
 }
 
 /// Seconds that this thread has spent on a core.
@@ -219,6 +287,7 @@ mod tests {
         let bench = SimBench {
             seconds: 0.05,
             environments: 2,
+            fleets: 2,
             hidden: vec![8],
             physics: Engine::Batched,
             plain: false,
@@ -229,7 +298,7 @@ mod tests {
         // steps / wall by its definition, and the policy never makes it faster than free.
         let expected = number("control_steps_measured") / number("wall_seconds");
         assert_eq!(number("control_steps_per_second_per_core"), expected);
-        assert_eq!(number("control_steps_measured") % 2.0, 0.0);
+        assert_eq!(number("control_steps_per_second"), 2.0 * expected);
         assert!(number("with_inference_per_second_per_core") > 0.0);
         assert!((0.0..1.0).contains(&number("inference_share")));
         assert_eq!(number("faults"), 0.0);
