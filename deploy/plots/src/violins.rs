@@ -53,7 +53,7 @@ impl Violin {
         let mean = values.iter().sum::<f64>() / n;
         let variance = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0);
         let width = variance.sqrt() * n.powf(-0.2);
-        if values.len() < LEAST || !(width > 0.0) {
+        if values.len() < LEAST || width.is_nan() || width <= 0.0 {
             return None;
         }
         let (low, high) = extremes(values.iter().copied())?;

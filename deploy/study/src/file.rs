@@ -153,7 +153,7 @@ impl StudyFile {
                     "nothing would be tried; give commands and episodes",
                 );
             }
-            if !(evaluation.seconds > 0.0) {
+            if evaluation.seconds.is_nan() || evaluation.seconds <= 0.0 {
                 return refuse("evaluate.seconds", "use more than 0");
             }
         }

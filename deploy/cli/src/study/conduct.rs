@@ -50,7 +50,7 @@ struct Job {
 enum Task {
     Training {
         tail: Tail,
-        pace: Pace,
+        pace: Box<Pace>,
     },
     /// Judging: where the answer is written until it is whole.
     Judging {
@@ -204,7 +204,7 @@ impl<'a> Conductor<'a> {
                 } else {
                     Tail::from_start(&path)
                 };
-                let pace = Pace::default();
+                let pace = Box::default();
                 let task = Task::Training { tail, pace };
                 self.jobs.push(Job { run, child, task });
             }

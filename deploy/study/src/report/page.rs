@@ -39,7 +39,7 @@ pub(super) fn page(results: &Results, figures: &[Drawn]) -> String {
         .iter()
         .filter(|(_, methods, least)| methods.len() >= *least)
     {
-        let _ = write!(body, "<h2>{title}</h2>\n<p>{}</p>\n", legend(results));
+        let _ = writeln!(body, "<h2>{title}</h2>\n<p>{}</p>", legend(results));
         body.push_str(&tables::performance(results, methods));
         let against = methods
             .iter()
@@ -61,9 +61,9 @@ pub(super) fn page(results: &Results, figures: &[Drawn]) -> String {
     }
     body.push_str("<h2>Figures</h2>\n");
     for figure in figures {
-        let _ = write!(
+        let _ = writeln!(
             body,
-            "<figure id=\"{}\">{}<figcaption>{}</figcaption></figure>\n",
+            "<figure id=\"{}\">{}<figcaption>{}</figcaption></figure>",
             figure.name,
             figure.svg,
             escape(&figure.caption)
@@ -87,12 +87,12 @@ fn opening(results: &Results) -> String {
         .split("\n\n")
         .filter(|paragraph| !paragraph.trim().is_empty())
     {
-        let _ = write!(html, "<p>{}</p>\n", escape(paragraph));
+        let _ = writeln!(html, "<p>{}</p>", escape(paragraph));
     }
-    let _ = write!(
+    let _ = writeln!(
         html,
         "<p>{} methods × {} seeds: {finished} of {} runs finished, {failed} failed. The paper: 8 methods × {} seeds × \
-         {} iterations of {} transitions.</p>\n",
+         {} iterations of {} transitions.</p>",
         results.entries.len(),
         file.seeds.len(),
         results.runs.len(),
@@ -148,7 +148,7 @@ fn said(results: &Results) -> String {
         &head(&["", "Section", "The paper says", "The runs say"]),
         &rows,
     );
-    let _ = write!(html, "<div class=\"claims\">{inner}</div>\n");
+    let _ = writeln!(html, "<div class=\"claims\">{inner}</div>");
     html
 }
 
