@@ -18,7 +18,7 @@ from pathlib import Path
 
 import iceoryx2 as iox2
 
-PROTOCOL_VERSION = "2"
+PROTOCOL_VERSION = "3"
 PHASE_ONE = 2**64 - 1
 
 
@@ -46,7 +46,7 @@ class Directive(ctypes.Structure):
         ("rule", ctypes.c_uint32), ("first", ctypes.c_float), ("second", ctypes.c_float),
         ("granularity", ctypes.c_uint32), ("warned", ctypes.c_uint32), ("lower", ctypes.c_double),
         ("upper", ctypes.c_double), ("breakout_rate", ctypes.c_double), ("threshold", ctypes.c_double),
-        ("trend", ctypes.c_double),
+        ("trend", ctypes.c_double), ("decision_seconds", ctypes.c_double),
     ]
 
     @staticmethod

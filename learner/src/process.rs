@@ -207,6 +207,7 @@ impl Loop {
                 seconds: self.seconds(state),
                 iteration_seconds,
                 samples_per_second: report.rows as f64 / iteration_seconds,
+                decision_seconds: guide.directive.and_then(|told| told.decision_seconds()),
                 gather_seconds: span.gather_seconds,
                 broadcast_seconds: span.broadcast_seconds,
                 copy_seconds: gathered.copy_seconds,

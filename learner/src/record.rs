@@ -165,6 +165,8 @@ pub(crate) struct Timing {
     /// This iteration, from broadcast to broadcast.
     pub(crate) iteration_seconds: f64,
     pub(crate) samples_per_second: f64,
+    /// What the scheduler took to decide on the rule of this iteration; `null` before its first word.
+    pub(crate) decision_seconds: Option<f64>,
     /// Giving the weights to the actors, before the iteration.
     pub(crate) broadcast_seconds: f64,
     /// Waiting for and copying rollouts.

@@ -58,6 +58,8 @@ pub struct Directive {
     pub threshold: f64,
     /// Slope of the reward window, in reward per iteration.
     pub trend: f64,
+    /// From the report to this decision, s: what scheduling costs.
+    pub decision_seconds: f64,
 }
 
 /// Why a directive cannot be followed.
@@ -104,6 +106,7 @@ impl Directive {
             breakout_rate: decision.breakout_rate.unwrap_or(f64::NAN),
             threshold: decision.threshold,
             trend: decision.trend.unwrap_or(f64::NAN),
+            decision_seconds: f64::NAN,
         }
     }
 
@@ -151,6 +154,11 @@ impl Directive {
     /// Slope of the reward window, once it exists.
     pub fn trend(&self) -> Option<f64> {
         number(self.trend)
+    }
+
+    /// From the report to this decision in seconds, if the scheduler has told.
+    pub fn decision_seconds(&self) -> Option<f64> {
+        number(self.decision_seconds)
     }
 
     /// Iteration whose report brought phase II.
@@ -311,6 +319,7 @@ mod tests {
             assert_eq!(directive.bounds(), None);
             assert_eq!(directive.breakout_rate(), None);
             assert_eq!(directive.trend(), Some(-0.5));
+            assert_eq!(directive.decision_seconds(), None);
         }
     }
 

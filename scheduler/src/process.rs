@@ -1,7 +1,7 @@
 //! The scheduler's loop: a report arrives, a directive answers.
 
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use ampco::{Decision, Report, ScheduleConfig};
 use anyhow::{Context, Result};
@@ -41,8 +41,12 @@ fn serve(folder: &Folder, config: ScheduleConfig, node: &Node, held: &mut Lock) 
     let mut desk = begin(folder, config)?;
     while reports.wait(SLEEP)? != Wake::Shutdown {
         while let Some(arrival) = reports.receive()? {
+            let started = Instant::now();
             let decision = answer(&mut desk, &arrival, folder)?;
-            directives.send(Directive::new(arrival.report.learner, &decision))?;
+            directives.send(Directive {
+                decision_seconds: started.elapsed().as_secs_f64(),
+                ..Directive::new(arrival.report.learner, &decision)
+            })?;
             held.at_work();
         }
     }

@@ -199,7 +199,12 @@ impl Process {
 
     /// Waits for the end, which must come within [`PATIENCE`].
     pub(crate) fn end(&mut self) -> ExitStatus {
-        let status = until("the end of a process", || {
+        self.end_within(PATIENCE)
+    }
+
+    /// Waits for the end of what takes longer.
+    pub(crate) fn end_within(&mut self, patience: Duration) -> ExitStatus {
+        let status = until_within(patience, "the end of a process", || {
             self.child.try_wait().expect("a child can be waited for")
         });
         self.stdout.finish();
@@ -230,15 +235,19 @@ pub(crate) fn finish(command: Command) -> (bool, String, String) {
 }
 
 /// Looks again and again until there is an answer; panics, naming what was awaited, if none comes.
-pub(crate) fn until<T>(awaited: &str, mut look: impl FnMut() -> Option<T>) -> T {
+pub(crate) fn until<T>(awaited: &str, look: impl FnMut() -> Option<T>) -> T {
+    until_within(PATIENCE, awaited, look)
+}
+
+fn until_within<T>(patience: Duration, awaited: &str, mut look: impl FnMut() -> Option<T>) -> T {
     let started = Instant::now();
     loop {
         if let Some(answer) = look() {
             return answer;
         }
         assert!(
-            started.elapsed() < PATIENCE,
-            "waited {PATIENCE:?} in vain for {awaited}"
+            started.elapsed() < patience,
+            "waited {patience:?} in vain for {awaited}"
         );
         thread::park_timeout(GLANCE);
     }

@@ -18,4 +18,5 @@ mod pressure;
 mod repeat;
 mod schedule;
 mod soak;
+mod study;
 mod watch;

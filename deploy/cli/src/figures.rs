@@ -151,6 +151,11 @@ impl Pace {
         self.newest = Some(figures);
     }
 
+    /// Seconds of an iteration, once one was seen.
+    pub(crate) fn seconds(&self) -> Option<f64> {
+        self.seconds
+    }
+
     /// Time until iteration `last` at this pace; `None` when there is no such end or no pace yet.
     pub(crate) fn until(&self, last: u64) -> Option<Duration> {
         let done = self.newest.as_ref()?.iteration;

@@ -21,6 +21,7 @@ mod presets;
 mod resolve;
 mod soak;
 mod status;
+mod study;
 mod supervise;
 mod train;
 
@@ -48,6 +49,7 @@ Examples:
   ampco motions import 02_01.amc --out walks      motion capture, onto the robot
   ampco export walk --out walk-policy             policy.onnx and all that a robot needs
   ampco play walk --html walk.html                a page that plays it
+  ampco study run deploy/studies/laptop.toml      eight methods, three seeds, in the paper's tables
   ampco bench sim                                 how fast this machine simulates
   ampco soak --kills 500                          kill at random, and see that nothing is lost
 
@@ -72,6 +74,7 @@ enum Command {
     Motions(motions::Motions),
     Export(export::Export),
     Play(play::Play),
+    Study(study::Study),
     Bench(bench::Bench),
     Soak(soak::Soak),
 }
@@ -89,6 +92,7 @@ fn main() -> ExitCode {
         Command::Motions(motions) => motions.run(),
         Command::Export(export) => export.run(),
         Command::Play(play) => play.run(),
+        Command::Study(study) => study.run(),
         Command::Bench(bench) => bench.run(),
         Command::Soak(soak) => soak.run(),
     };

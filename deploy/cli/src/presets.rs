@@ -18,7 +18,7 @@ struct Embedded {
     walks: bool,
 }
 
-const EMBEDDED: [Embedded; 4] = [
+const EMBEDDED: [Embedded; 10] = [
     Embedded {
         name: "ampco",
         text: include_str!("../../presets/ampco.toml"),
@@ -32,6 +32,36 @@ const EMBEDDED: [Embedded; 4] = [
     Embedded {
         name: "amp-0.5",
         text: include_str!("../../presets/amp-0.5.toml"),
+        walks: true,
+    },
+    Embedded {
+        name: "amp-0.7",
+        text: include_str!("../../presets/amp-0.7.toml"),
+        walks: true,
+    },
+    Embedded {
+        name: "amp-0.8",
+        text: include_str!("../../presets/amp-0.8.toml"),
+        walks: true,
+    },
+    Embedded {
+        name: "adamimic",
+        text: include_str!("../../presets/adamimic.toml"),
+        walks: true,
+    },
+    Embedded {
+        name: "amp-roger",
+        text: include_str!("../../presets/amp-roger.toml"),
+        walks: true,
+    },
+    Embedded {
+        name: "ampco-without-aig",
+        text: include_str!("../../presets/ampco-without-aig.toml"),
+        walks: true,
+    },
+    Embedded {
+        name: "ampco-without-roger",
+        text: include_str!("../../presets/ampco-without-roger.toml"),
         walks: true,
     },
     Embedded {

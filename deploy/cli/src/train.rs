@@ -20,7 +20,7 @@ use crate::supervise::{self, Launch};
 /// anything starts. A live line shows how it goes; metrics and logs are in the run's folder.
 #[derive(Debug, Args)]
 pub(crate) struct Train {
-    /// Preset: ampco, amp-0.5, smoke, or a TOML file of your own [default: ampco]
+    /// Preset: ampco, one of the methods it is compared with, smoke, or a TOML file [default: ampco]
     #[arg(long, value_name = "NAME|FILE")]
     preset: Option<String>,
     /// Name of the run, a new one unless --resume [default: the preset's, numbered]
@@ -47,7 +47,7 @@ pub(crate) struct Train {
 
 impl Train {
     pub(crate) fn run(&self) -> Result<()> {
-        // A soak starts us as its child, and takes us along when it ends.
+        // A soak or a study starts us as its child, and takes us along when it ends.
         protocol::end_with_supervisor()?;
         let (folder, config, resolved) = if self.resume {
             self.resumed()?

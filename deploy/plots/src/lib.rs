@@ -8,6 +8,7 @@
 //! | curves over time, with bands and marks | [`lines`] |
 //! | shares by name | [`bars`] |
 //! | what is on the ground when | [`contacts`] |
+//! | distributions of few numbers | [`violins`] |
 //! | a noisy curve as a mean with its spread | [`smooth`] |
 //! | panels under each other, colours, text | here, `canvas` |
 #![forbid(unsafe_code)]
@@ -17,11 +18,13 @@ mod canvas;
 pub mod contacts;
 pub mod lines;
 pub mod smooth;
+pub mod violins;
 
 pub use bars::{Bar, BarChart};
 pub use contacts::{ContactRow, ContactStrip};
 pub use lines::{Axis, Band, Line, LineChart, Mark};
 pub use smooth::{Spread, smooth};
+pub use violins::{Violin, ViolinChart};
 
 use canvas::{Area, Drawn};
 use plotters::prelude::{IntoDrawingArea, SVGBackend, WHITE};
@@ -49,6 +52,8 @@ pub enum Panel {
     Bars(BarChart),
     /// Contact over time.
     Contacts(ContactStrip),
+    /// Distributions side by side.
+    Violins(ViolinChart),
 }
 
 /// A colour: that of a series by its index, which repeats after eight, or grey for what is compared with.
@@ -90,7 +95,7 @@ impl Figure {
 impl Panel {
     fn height(&self) -> u32 {
         match self {
-            Self::Lines(_) => 220,
+            Self::Lines(_) | Self::Violins(_) => 220,
             Self::Bars(chart) => chart.height(),
             Self::Contacts(strip) => strip.height(),
         }
@@ -101,6 +106,7 @@ impl Panel {
             Self::Lines(chart) => chart.draw(area),
             Self::Bars(chart) => chart.draw(area),
             Self::Contacts(strip) => strip.draw(area),
+            Self::Violins(chart) => chart.draw(area),
         }
     }
 }

@@ -94,9 +94,28 @@ fn data_without_a_finite_number_are_said_to_be_none() {
         curve(&[(0.0, f64::NAN), (1.0, f64::INFINITY)]),
         Panel::Bars(BarChart::default()),
         Panel::Contacts(ContactStrip::default()),
+        Panel::Violins(ViolinChart::default()),
     ] {
         assert_eq!(count(&figure(vec![panel]), "no data"), 1);
     }
+}
+
+#[test]
+fn a_violin_has_an_outline_a_dot_per_number_and_a_star() {
+    let chart = ViolinChart {
+        title: "energy".into(),
+        reference: Some(2.0),
+        violins: vec![Violin {
+            name: "a & b".into(),
+            colour: Colour::Series(0),
+            values: vec![1.0, 2.0, 3.0, f64::NAN],
+        }],
+        ..ViolinChart::default()
+    };
+    let svg = figure(vec![Panel::Violins(chart)]);
+    assert_eq!(count(&svg, "<circle"), 3);
+    assert_eq!(count(&svg, "<polygon"), 2); // the outline and the star
+    assert!(svg.contains("a &amp; b"));
 }
 
 #[test]

@@ -174,6 +174,7 @@ impl Learning {
         self.score(batch)?;
         let style = moments(&self.scratch.style_rewards);
         let task = moments(&batch.task_rewards);
+        let moments_known = (self.clock)();
         let style_weight = blend::blend(
             rule,
             granularity,
@@ -182,6 +183,7 @@ impl Learning {
             (style[0] as f32, task[0] as f32),
             &mut self.scratch.rewards,
         );
+        let weighting = (self.clock)() - moments_known;
         let reward_mean = moments(&self.scratch.rewards)[0];
         let scored = (self.clock)();
         self.estimate(batch)?;
@@ -224,6 +226,7 @@ impl Learning {
             discriminator_loss: discriminator.loss,
             seconds: Seconds {
                 score: scored - started,
+                weighting,
                 advantage: estimated - scored,
                 ppo: improved - estimated,
                 discriminator: discriminated - improved,

@@ -75,6 +75,8 @@ pub struct IterationReport {
 pub struct Seconds {
     /// Checks, scoring, blending.
     pub score: f64,
+    /// Of this, weights and blend of all transitions (Eq. 1, 9, 12): what the method costs.
+    pub weighting: f64,
     /// Values and advantages.
     pub advantage: f64,
     /// The policy's update.

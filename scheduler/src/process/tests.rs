@@ -142,13 +142,14 @@ impl Serving {
     }
 }
 
-/// Everything but the numbers that the publisher counts up. As text: NaN stands for what does not exist yet.
+/// Everything but the numbers that the publisher counts up, and the time. As text: NaN stands for what does not exist yet.
 fn content(directive: Directive) -> String {
     format!(
         "{:?}",
         Directive {
             scheduler: 0,
             sequence: 0,
+            decision_seconds: 0.0,
             ..directive
         }
     )

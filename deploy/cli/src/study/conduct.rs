@@ -1,0 +1,387 @@
+//! The runs of a study, one process group after another or several at once, to the end or until it is stopped.
+
+use std::collections::VecDeque;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use ::study::StudyFile;
+use ::study::outlook::Progress;
+use anyhow::{Context, Result, anyhow};
+use run::metrics::{self, Tail};
+use rustix::process::Signal;
+use tokio::process::Child;
+use tokio::time::{MissedTickBehavior, interval};
+
+use super::folder::StudyFolder;
+use super::group::{self, Standing};
+use super::line::{Going, Stand};
+use super::plan::Planned;
+use crate::console::Console;
+use crate::figures::{Figures, Pace, count};
+use crate::supervise::Stop;
+
+/// Between two looks.
+const LOOK: Duration = Duration::from_millis(100);
+/// A group that an earlier study left is given this long to end.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// Runs what is not done yet.
+pub(super) fn conduct(folder: &StudyFolder, file: &StudyFile, planned: Vec<Planned>) -> Result<()> {
+    // One thread: the kernel ties a child's life to the thread that started it.
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .context("starting the study's loop")?;
+    runtime.block_on(async {
+        let mut stop = Stop::install()?;
+        let mut conductor = Conductor::new(folder, file, planned)?;
+        conductor.until_done(&mut stop).await?;
+        conductor.close()
+    })
+}
+
+/// What runs now.
+struct Job {
+    run: usize,
+    child: Child,
+    task: Task,
+}
+
+enum Task {
+    Training {
+        tail: Tail,
+        pace: Box<Pace>,
+    },
+    /// Judging: where the answer is written until it is whole.
+    Judging {
+        draft: PathBuf,
+    },
+}
+
+struct Conductor<'a> {
+    folder: &'a StudyFolder,
+    file: &'a StudyFile,
+    planned: Vec<Planned>,
+    progress: Vec<Progress>,
+    queue: VecDeque<usize>,
+    jobs: Vec<Job>,
+    failures: Vec<String>,
+    parallel: usize,
+    console: Console,
+    stopping: bool,
+    /// Since when the first of the queue waits for an earlier group to end.
+    waiting: Option<Instant>,
+}
+
+impl<'a> Conductor<'a> {
+    fn new(folder: &'a StudyFolder, file: &'a StudyFile, planned: Vec<Planned>) -> Result<Self> {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let widest = planned.iter().map(|run| run.cores).max().unwrap_or(1);
+        let mut progress = Vec::new();
+        for run in &planned {
+            progress.push(so_far(run, folder)?);
+        }
+        Ok(Self {
+            folder,
+            file,
+            queue: (0..planned.len()).collect(),
+            progress,
+            jobs: Vec::new(),
+            failures: Vec::new(),
+            parallel: match file.parallel {
+                0 => (cores / widest.max(1)).max(1),
+                given => given,
+            },
+            planned,
+            console: Console::new(),
+            stopping: false,
+            waiting: None,
+        })
+    }
+
+    async fn until_done(&mut self, stop: &mut Stop) -> Result<()> {
+        let mut looks = interval(LOOK);
+        looks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        loop {
+            tokio::select! {
+                () = stop.requested() => self.stop(),
+                _ = looks.tick() => {
+                    self.look()?;
+                    if self.jobs.is_empty() && (self.stopping || self.queue.is_empty()) {
+                        self.console.finish();
+                        return Ok(());
+                    }
+                }
+            }
+        }
+    }
+
+    /// Passes the request on; asked once more, the groups kill at once.
+    fn stop(&mut self) {
+        if !self.stopping {
+            self.console
+                .say("stopping: each run finishes its iteration and writes a checkpoint");
+        }
+        self.stopping = true;
+        for job in &self.jobs {
+            match job.task {
+                Task::Training { .. } => group::signal(&job.child, Signal::INT),
+                Task::Judging { .. } => group::signal(&job.child, Signal::TERM),
+            }
+        }
+    }
+
+    fn look(&mut self) -> Result<()> {
+        let mut index = 0;
+        while index < self.jobs.len() {
+            self.follow(index)?;
+            match self.jobs[index]
+                .child
+                .try_wait()
+                .context("waiting for a run")?
+            {
+                None => index += 1,
+                Some(status) => {
+                    let job = self.jobs.swap_remove(index);
+                    self.ended(job, status)?;
+                }
+            }
+        }
+        while !self.stopping && self.jobs.len() < self.parallel {
+            if !self.start_next()? {
+                break;
+            }
+        }
+        let line = self.stand().line();
+        self.console.show(&line, Instant::now());
+        Ok(())
+    }
+
+    /// Reads what a run has written since the last look.
+    fn follow(&mut self, index: usize) -> Result<()> {
+        let job = &mut self.jobs[index];
+        if let Task::Training { tail, pace } = &mut job.task {
+            for line in tail.poll().context("following the metrics")? {
+                pace.take(&line);
+            }
+            let progress = &mut self.progress[job.run];
+            if let Some(newest) = &pace.newest {
+                progress.done = newest.iteration;
+            }
+            progress.pace = pace.seconds().or(progress.pace);
+        }
+        Ok(())
+    }
+
+    /// Starts what the queue holds first; false if nothing could be started now.
+    fn start_next(&mut self) -> Result<bool> {
+        let Some(run) = self.queue.front().copied() else {
+            return Ok(false);
+        };
+        if let Some(pid) = self.held(run)? {
+            let since = *self.waiting.get_or_insert_with(Instant::now);
+            if since.elapsed() < PATIENCE {
+                return Ok(false);
+            }
+            self.queue.pop_front();
+            self.waiting = None;
+            self.fail(run, &format!("process {pid} still trains it"))?;
+            return Ok(true);
+        }
+        self.queue.pop_front();
+        self.waiting = None;
+        let planned = &self.planned[run];
+        let standing = Standing::of(planned, self.folder)?;
+        if standing == Standing::Done {
+            self.finished(run)?;
+            return Ok(true);
+        }
+        match group::train(planned, self.folder, standing) {
+            Ok(child) => {
+                let path = self.folder.runs().join(&planned.name).join("metrics.jsonl");
+                let tail = if standing == Standing::Begun {
+                    Tail::from_end(&path)
+                } else {
+                    Tail::from_start(&path)
+                };
+                let pace = Box::default();
+                let task = Task::Training { tail, pace };
+                self.jobs.push(Job { run, child, task });
+            }
+            Err(error) => self.fail(run, &format!("{error:#}"))?,
+        }
+        Ok(true)
+    }
+
+    /// The supervisor that holds a run: one that an earlier study left and that is ending.
+    fn held(&self, run: usize) -> Result<Option<String>> {
+        let Some(folder) = self.folder.run(&self.planned[run].name)? else {
+            return Ok(None);
+        };
+        Ok(folder.holder("supervisor")?)
+    }
+
+    fn ended(&mut self, job: Job, status: std::process::ExitStatus) -> Result<()> {
+        let planned = &self.planned[job.run];
+        match job.task {
+            Task::Training { .. } => {
+                if Standing::of(planned, self.folder)? == Standing::Done {
+                    let message = format!("{} is done", planned.name);
+                    self.console.say(&message);
+                    self.finished(job.run)
+                } else if !status.success() {
+                    let words = group::words(status, &self.folder.log(&planned.name));
+                    self.fail(job.run, &words)
+                } else if self.stopping {
+                    Ok(())
+                } else {
+                    self.fail(job.run, "it was ended before its last iteration")
+                }
+            }
+            Task::Judging { draft } => {
+                if status.success() {
+                    let path = draft.with_extension("json");
+                    return std::fs::rename(&draft, &path)
+                        .with_context(|| format!("renaming {}", draft.display()));
+                }
+                // A draft that cannot be removed is overwritten by the next attempt.
+                let _ = std::fs::remove_file(&draft);
+                if self.stopping {
+                    return Ok(());
+                }
+                let words = group::words(status, &self.folder.log(&planned.name));
+                self.fail(job.run, &format!("judging it {words}"))
+            }
+        }
+    }
+
+    /// A run whose training is done: judged, if that is asked for and was not done before.
+    fn finished(&mut self, run: usize) -> Result<()> {
+        let name = self.planned[run].name.clone();
+        self.progress[run].done = self.progress[run].of;
+        self.folder.note(&name, None)?;
+        let Some(folder) = self.folder.run(&name)? else {
+            return Ok(());
+        };
+        let path = StudyFolder::evaluation(&folder);
+        let Some(evaluation) = &self.file.evaluate else {
+            return Ok(());
+        };
+        if path.is_file() || self.stopping {
+            return Ok(());
+        }
+        let draft = path.with_extension("draft");
+        match group::evaluate(&folder, evaluation, &draft, self.folder) {
+            Ok(child) => {
+                let task = Task::Judging { draft };
+                self.jobs.push(Job { run, child, task });
+                Ok(())
+            }
+            Err(error) => self.fail(run, &format!("{error:#}")),
+        }
+    }
+
+    /// Says and notes that a run failed; the others go on.
+    fn fail(&mut self, run: usize, words: &str) -> Result<()> {
+        let name = &self.planned[run].name;
+        self.console
+            .say(&format!("{name} failed and the others go on: {words}"));
+        self.failures.push(name.clone());
+        self.folder.note(name, Some(words))
+    }
+
+    fn stand(&self) -> Stand {
+        let going = |job: &Job| {
+            let (name, of) = (&self.planned[job.run].name, self.planned[job.run].target);
+            let (iteration, rate) = match &job.task {
+                Task::Training { pace, .. } => {
+                    let rate = pace
+                        .newest
+                        .as_ref()
+                        .and_then(|f| f.timing.samples_per_second);
+                    (Some((self.progress[job.run].done, of)), rate)
+                }
+                Task::Judging { .. } => (None, None),
+            };
+            Going {
+                name: name.clone(),
+                iteration,
+                samples_per_second: rate,
+            }
+        };
+        Stand {
+            runs: self.progress.clone(),
+            failed: self.failures.len(),
+            going: self.jobs.iter().map(going).collect(),
+            parallel: self.parallel,
+        }
+    }
+
+    /// The last words; a failure if a run failed.
+    fn close(&mut self) -> Result<()> {
+        let path = self.folder.path().display();
+        let done = self
+            .progress
+            .iter()
+            .filter(|run| run.done >= run.of)
+            .count();
+        let all = self.progress.len();
+        if self.stopping {
+            let message =
+                format!("stopped: {done} of {all} runs are done; the same command goes on");
+            self.console.say(&message);
+            return Ok(());
+        }
+        if self.failures.is_empty() {
+            self.measure_overhead()?;
+        }
+        let message = format!(
+            "{done} of {} done in {path}; `ampco study report` of that folder writes the report",
+            count(all, "run")
+        );
+        self.console.say(&message);
+        if self.failures.is_empty() {
+            return Ok(());
+        }
+        Err(anyhow!(
+            "{} of {all} runs failed: {}; see {path}/logs, and give the same command to try them again",
+            self.failures.len(),
+            self.failures.join(", ")
+        ))
+    }
+
+    /// Times the scheduler alone, now that the machine is free.
+    fn measure_overhead(&mut self) -> Result<()> {
+        let here = std::env::current_exe().context("finding this program's own path")?;
+        let output = std::process::Command::new(here)
+            .args(["bench", "scheduler"])
+            .output()
+            .context("timing the scheduler")?;
+        let said = String::from_utf8_lossy(&output.stdout);
+        match said.lines().last().filter(|_| output.status.success()) {
+            Some(figures) => self.folder.write("overhead.json", &format!("{figures}\n")),
+            None => {
+                self.console
+                    .say("the scheduler could not be timed alone; the report will not have it");
+                Ok(())
+            }
+        }
+    }
+}
+
+/// How far a run has come by what it has written.
+fn so_far(planned: &Planned, folder: &StudyFolder) -> Result<Progress> {
+    let mut progress = Progress {
+        of: planned.target,
+        ..Progress::default()
+    };
+    if let Some(run) = folder.run(&planned.name)?
+        && let Some(figures) = metrics::newest(&run.metrics_path())?
+            .as_ref()
+            .and_then(Figures::read)
+    {
+        progress.done = figures.iteration;
+        progress.pace = figures.timing.iteration_seconds;
+    }
+    Ok(progress)
+}

@@ -1,0 +1,174 @@
+//! The folder of a study: what lies where in it.
+//!
+//! | entry | what |
+//! | --- | --- |
+//! | `study.toml` | the study as it was last asked for, options included |
+//! | `origin.json` | the command and the machine |
+//! | `configs/<run>.toml` | the configuration that each run is started with |
+//! | `runs/<run>/` | the runs, like any other |
+//! | `logs/<run>.log` | what `ampco train` and `ampco evaluate` said |
+//! | `failed/<run>.txt` | why a run failed; gone once it has succeeded |
+//! | `overhead.json` | what `ampco bench scheduler` found at the end |
+//! | `report/` | the report |
+
+use std::path::{Path, PathBuf};
+
+use ::study::StudyFile;
+use anyhow::{Context, Result, anyhow};
+use run::{Folder, FolderError, Lock};
+use serde_json::{Value, json};
+
+use super::plan::Planned;
+use crate::failure::usage;
+
+/// The folder.
+#[derive(Debug)]
+pub(super) struct StudyFolder {
+    path: PathBuf,
+}
+
+impl StudyFolder {
+    /// Makes it with its inner folders; what is there stays.
+    pub(super) fn create(path: &Path) -> Result<Self> {
+        for inner in ["configs", "runs", "logs", "failed"] {
+            let inner = path.join(inner);
+            std::fs::create_dir_all(&inner)
+                .with_context(|| format!("making the folder {}", inner.display()))?;
+        }
+        Self::absolute(path)
+    }
+
+    /// One that is there.
+    pub(super) fn open(path: &Path) -> Result<Self> {
+        if !path.join("study.toml").is_file() {
+            return Err(usage(format!(
+                "{} holds no study.toml; give the folder that `ampco study run` made",
+                path.display()
+            )));
+        }
+        Self::absolute(path)
+    }
+
+    fn absolute(path: &Path) -> Result<Self> {
+        let absolute = std::path::absolute(path);
+        Ok(Self {
+            path: absolute.with_context(|| format!("finding {}", path.display()))?,
+        })
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Refuses a second `ampco study run` in the same folder.
+    pub(super) fn lock(&self) -> Result<Lock> {
+        match Folder::open(&self.path)?.lock("study") {
+            Err(FolderError::Held { pid, .. }) => Err(anyhow!(
+                "process {pid} runs a study in {} already; wait for it, or use another --out",
+                self.path.display()
+            )),
+            locked => Ok(locked?),
+        }
+    }
+
+    pub(super) fn file(&self) -> Result<StudyFile> {
+        let path = self.path.join("study.toml");
+        let text = std::fs::read_to_string(&path)
+            .with_context(|| format!("reading {}", path.display()))?;
+        StudyFile::parse(&text).map_err(|error| usage(format!("{}: {error}", path.display())))
+    }
+
+    /// Writes down what is asked for, with the configuration of every run.
+    pub(super) fn begin(&self, file: &StudyFile, planned: &[Planned]) -> Result<()> {
+        self.write("study.toml", &file.to_toml())?;
+        self.write("origin.json", &format!("{:#}\n", origin()))?;
+        for run in planned {
+            let words = format!(
+                "Run {} of the study; written by `ampco study run`.",
+                run.name
+            );
+            run.config.write(&self.config(&run.name), &words)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn write(&self, name: &str, text: &str) -> Result<()> {
+        let path = self.path.join(name);
+        run::replace_file(&path, text.as_bytes())
+            .with_context(|| format!("writing {}", path.display()))
+    }
+
+    /// JSON of a file in it, if it is there.
+    pub(super) fn json(&self, name: &str) -> Result<Option<Value>> {
+        let path = self.path.join(name);
+        if !path.is_file() {
+            return Ok(None);
+        }
+        let bytes = std::fs::read(&path).with_context(|| format!("reading {}", path.display()))?;
+        let value = serde_json::from_slice(&bytes);
+        Ok(Some(
+            value.with_context(|| format!("reading {}", path.display()))?,
+        ))
+    }
+
+    pub(super) fn runs(&self) -> PathBuf {
+        self.path.join("runs")
+    }
+
+    /// A run's folder, if it was begun.
+    pub(super) fn run(&self, name: &str) -> Result<Option<Folder>> {
+        let path = self.runs().join(name);
+        let begun = path.join("config.toml").is_file();
+        Ok(begun.then(|| Folder::open(&path)).transpose()?)
+    }
+
+    pub(super) fn config(&self, name: &str) -> PathBuf {
+        self.path.join("configs").join(format!("{name}.toml"))
+    }
+
+    pub(super) fn log(&self, name: &str) -> PathBuf {
+        self.path.join("logs").join(format!("{name}.log"))
+    }
+
+    fn failure_path(&self, name: &str) -> PathBuf {
+        self.path.join("failed").join(format!("{name}.txt"))
+    }
+
+    /// Why a run failed, if it did.
+    pub(super) fn failure(&self, name: &str) -> Option<String> {
+        let words = std::fs::read_to_string(self.failure_path(name)).ok()?;
+        Some(words.trim_end().to_owned())
+    }
+
+    /// Notes that a run failed, or that it has not.
+    pub(super) fn note(&self, name: &str, failure: Option<&str>) -> Result<()> {
+        let path = self.failure_path(name);
+        match failure {
+            Some(words) => run::replace_file(&path, format!("{words}\n").as_bytes()),
+            None if path.exists() => std::fs::remove_file(&path),
+            None => Ok(()),
+        }
+        .with_context(|| format!("noting the outcome of {name} in {}", path.display()))
+    }
+
+    /// What the command of a study's run left as its evaluation.
+    pub(super) fn evaluation(run: &Folder) -> PathBuf {
+        run.path().join("evaluation").join("study.json")
+    }
+}
+
+/// The command as it was typed, and the machine.
+fn origin() -> Value {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let facts = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = facts
+        .lines()
+        .find_map(|line| line.strip_prefix("model name")?.split_once(": "))
+        .map_or("unknown", |(_, model)| model);
+    json!({
+        "command": format!("ampco {}", arguments.join(" ")),
+        "version": env!("CARGO_PKG_VERSION"),
+        "processor": model,
+        "cores": std::thread::available_parallelism().map_or(1, usize::from),
+    })
+}

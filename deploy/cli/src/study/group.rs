@@ -1,0 +1,120 @@
+//! One program that a study has started: `ampco train` of a run, or `ampco evaluate` of what came of it.
+//!
+//! A run is trained as anybody would train it, by this same program, so that a study adds nothing to it and any of its
+//! runs can be repeated by hand.
+
+use std::ffi::OsString;
+use std::fs::{File, OpenOptions};
+use std::path::Path;
+use std::process::{ExitStatus, Stdio};
+
+use ::study::Evaluation;
+use anyhow::{Context, Result};
+use run::Folder;
+use rustix::process::{Pid, Signal, kill_process};
+use tokio::process::{Child, Command};
+
+use super::folder::StudyFolder;
+use super::plan::Planned;
+
+/// How far a run has come, from its folder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Standing {
+    /// Nothing that could be gone on with.
+    New,
+    /// There is a checkpoint.
+    Begun,
+    /// All iterations are done, and saved.
+    Done,
+}
+
+impl Standing {
+    pub(super) fn of(planned: &Planned, folder: &StudyFolder) -> Result<Self> {
+        let Some(run) = folder.run(&planned.name)? else {
+            return Ok(Self::New);
+        };
+        Ok(match run.checkpoints().list().last() {
+            None => Self::New,
+            Some(newest) if *newest >= planned.target => Self::Done,
+            Some(_) => Self::Begun,
+        })
+    }
+}
+
+/// Starts the training of a run, or goes on with it.
+pub(super) fn train(planned: &Planned, folder: &StudyFolder, standing: Standing) -> Result<Child> {
+    let name = &planned.name;
+    let mut arguments: Vec<OsString> = vec!["train".into(), "--run".into(), name.into()];
+    arguments.extend(["--runs-dir".into(), folder.runs().into()]);
+    if standing == Standing::New {
+        // Killed before its first checkpoint: there is nothing to go on from, and lines that would be in the way.
+        let left = folder.runs().join(name);
+        if left.exists() {
+            std::fs::remove_dir_all(&left)
+                .with_context(|| format!("clearing {}", left.display()))?;
+        }
+        arguments.extend(["--preset".into(), folder.config(name).into()]);
+    } else {
+        arguments.push("--resume".into());
+    }
+    start(&arguments, Stdio::null(), folder, name)
+}
+
+/// Starts the evaluation of a finished run; its answer goes to `draft`.
+pub(super) fn evaluate(
+    run: &Folder,
+    evaluation: &Evaluation,
+    draft: &Path,
+    folder: &StudyFolder,
+) -> Result<Child> {
+    let name = run.name();
+    let mut arguments: Vec<OsString> = vec!["evaluate".into(), name.clone().into()];
+    arguments.extend(["--runs-dir".into(), folder.runs().into(), "--json".into()]);
+    for [x, y, yaw] in &evaluation.commands {
+        arguments.push(format!("--command={x},{y},{yaw}").into());
+    }
+    arguments.push(format!("--episodes={}", evaluation.episodes).into());
+    arguments.push(format!("--seconds={}", evaluation.seconds).into());
+    if let Some(parent) = draft.parent() {
+        std::fs::create_dir_all(parent)
+            .with_context(|| format!("making the folder {}", parent.display()))?;
+    }
+    let answer = File::create(draft).with_context(|| format!("creating {}", draft.display()))?;
+    start(&arguments, answer.into(), folder, &name)
+}
+
+fn start(arguments: &[OsString], stdout: Stdio, folder: &StudyFolder, name: &str) -> Result<Child> {
+    let log = folder.log(name);
+    let opened = OpenOptions::new().append(true).create(true).open(&log);
+    let log = opened.with_context(|| format!("opening {}", log.display()))?;
+    let here = std::env::current_exe().context("finding this program's own path")?;
+    Command::new(here)
+        .args(arguments)
+        // A study that is killed leaves nobody training: the group ends in order, with a checkpoint.
+        .env(
+            protocol::SUPERVISOR_VARIABLE,
+            std::process::id().to_string(),
+        )
+        .stdin(Stdio::null())
+        .stdout(stdout)
+        .stderr(log)
+        .process_group(0)
+        .spawn()
+        .with_context(|| format!("starting {name}"))
+}
+
+/// Passes a request to end on.
+pub(super) fn signal(child: &Child, signal: Signal) {
+    if let Some(pid) = child.id().and_then(|id| Pid::from_raw(id.cast_signed())) {
+        // It may have ended a moment ago.
+        let _ = kill_process(pid, signal);
+    }
+}
+
+/// Why a program failed: the last thing it said.
+pub(super) fn words(status: ExitStatus, log: &Path) -> String {
+    let said = std::fs::read_to_string(log).unwrap_or_default();
+    let last = said.lines().rev().find(|line| line.starts_with("ampco: "));
+    let last = last.or(said.lines().last()).unwrap_or("it said nothing");
+    format!("{}: {last}", crate::child::describe(status))
+}

@@ -1,0 +1,110 @@
+//! What the scheduler costs (II-B), in runs and alone.
+
+use serde::Deserialize;
+
+use crate::measure::Record;
+use crate::statistics::median;
+
+/// The last line of `ampco bench scheduler`, as far as it is told here.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct Benchmark {
+    /// A decision with both windows full, µs.
+    pub decision_us: f64,
+    /// Iterations that the windows hold.
+    pub window: u64,
+    /// Eq. 9 and the blend for one control step of 4096 robots, µs.
+    pub phase_one_us_per_step_of_4096: f64,
+    /// Eq. 12 and the blend for the same.
+    pub phase_two_us_per_step_of_4096: f64,
+}
+
+/// Medians over a run's iterations: single ones are disturbed by whatever else the machine does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Overhead {
+    /// Iterations that told.
+    pub iterations: usize,
+    /// A training cycle, s.
+    pub cycle: f64,
+    /// The scheduler's decision: from a report to the rule, s.
+    pub decision: f64,
+    /// The learner's weighting and blending of all transitions of a cycle, s.
+    pub weighting: f64,
+    /// Sum of all decisions over the sum of all cycles.
+    pub decision_share: f64,
+    /// Sum of all weighting over the sum of all cycles.
+    pub weighting_share: f64,
+}
+
+impl Overhead {
+    /// Of a run; `None` if no line of its metrics tells.
+    pub fn of(records: &[Record]) -> Option<Self> {
+        let told: Vec<(f64, f64, f64)> = records
+            .iter()
+            .filter_map(|record| {
+                let timing = &record.timing;
+                let decision = timing.decision_seconds?;
+                let weighting = timing.learning.weighting?;
+                (timing.iteration_seconds > 0.0).then_some((
+                    timing.iteration_seconds,
+                    decision,
+                    weighting,
+                ))
+            })
+            .collect();
+        if told.is_empty() {
+            return None;
+        }
+        let column =
+            |part: fn(&(f64, f64, f64)) -> f64| -> Vec<f64> { told.iter().map(part).collect() };
+        let (cycles, decisions, weightings) = (
+            column(|told| told.0),
+            column(|told| told.1),
+            column(|told| told.2),
+        );
+        let sum = |values: &[f64]| values.iter().sum::<f64>();
+        Some(Self {
+            iterations: told.len(),
+            cycle: median(&cycles),
+            decision: median(&decisions),
+            weighting: median(&weightings),
+            decision_share: sum(&decisions) / sum(&cycles),
+            weighting_share: sum(&weightings) / sum(&cycles),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::{Learning, Timing};
+
+    fn record(cycle: f64, decision: Option<f64>) -> Record {
+        Record {
+            timing: Timing {
+                iteration_seconds: cycle,
+                decision_seconds: decision,
+                learning: Learning {
+                    weighting: Some(1e-5),
+                },
+                ..Timing::default()
+            },
+            ..Record::default()
+        }
+    }
+
+    #[test]
+    fn shares_are_of_the_sums_and_times_are_medians() {
+        let records = [
+            record(0.5, None),
+            record(0.5, Some(1e-6)),
+            record(0.5, Some(1e-6)),
+            record(1.0, Some(2e-6)),
+        ];
+        let overhead = Overhead::of(&records).unwrap();
+        assert_eq!(overhead.iterations, 3);
+        assert_eq!((overhead.cycle, overhead.decision), (0.5, 1e-6));
+        assert!((overhead.decision_share - 2e-6).abs() < 1e-18); // 4 µs of 2 s
+        assert!((overhead.weighting_share - 1.5e-5).abs() < 1e-17); // 30 µs of 2 s
+        assert_eq!(Overhead::of(&records[..1]), None);
+    }
+}

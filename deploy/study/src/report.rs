@@ -1,0 +1,98 @@
+//! The report of a study: one page that needs nothing beside it, and the same numbers as CSV and SVG.
+//!
+//! Every number is a mean over runs that the page names and links to, or stands in the row of one run.
+
+mod csv;
+mod curves;
+mod figures;
+mod html;
+mod page;
+mod tables;
+
+use crate::results::Results;
+
+pub use curves::{Point, curve};
+
+/// A file of the report: its name and its text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct File {
+    /// Without folder.
+    pub name: &'static str,
+    /// All of it.
+    pub text: String,
+}
+
+/// All files; `report.html` is the one to open.
+pub fn files(results: &Results) -> Vec<File> {
+    let file = |name, text| File { name, text };
+    let drawn = figures::all(results);
+    let mut files = vec![
+        file("report.html", page::page(results, &drawn)),
+        file("runs.csv", csv::runs(results)),
+        file("methods.csv", csv::methods(results)),
+        file("tests.csv", csv::tests(results)),
+        file("claims.csv", csv::claims(results)),
+        file("curves.csv", csv::curves(results)),
+    ];
+    files.extend(
+        drawn
+            .into_iter()
+            .map(|figure| file(figure.name, figure.svg)),
+    );
+    files
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::{State, sample};
+
+    fn text(files: &[File], name: &str) -> String {
+        let file = files.iter().find(|file| file.name == name);
+        file.expect("a file of this name").text.clone()
+    }
+
+    #[test]
+    fn a_report_holds_tables_figures_claims_and_what_failed() {
+        let mut results = sample::results(&[
+            ("ampco", &[1.0, 1.2]),
+            ("amp-0.5", &[2.0, 2.4]),
+            ("ampco-without-aig", &[3.0, 3.2]),
+        ]);
+        results.runs[3].measured = None;
+        results.runs[3].state = State::Failed("no <memory>".to_owned());
+        let files = files(&results);
+        let page = text(&files, "report.html");
+        for part in [
+            "a &lt;study&gt;",
+            "Table III",
+            "Table IV",
+            "1.100 ± 0.141", // 1.0 and 1.2
+            "0.288 ± 0.017", // the paper's
+            "href=\"../runs/ampco-seed1\"",
+            "no &lt;memory&gt;",
+            "smallest reachable p = 0.5",
+            "undecided",
+            "<svg",
+        ] {
+            assert!(page.contains(part), "{part}");
+        }
+        // Self-contained: no address outside but the names that SVG must declare.
+        let outside = page.replace("http://www.w3.org/2000/svg", "");
+        assert!(!outside.contains("http") && !outside.contains("<script"));
+        assert!(text(&files, "figure3.svg").contains("Phase II"));
+        let rows = text(&files, "runs.csv");
+        assert_eq!(rows.lines().count(), 1 + 6);
+        assert!(rows.contains("ampco-seed1,ampco,1,finished,200,"));
+    }
+
+    #[test]
+    fn a_study_without_a_finished_run_is_reported_all_the_same() {
+        let mut results = sample::results(&[("ampco", &[1.0])]);
+        results.runs[0].measured = None;
+        results.runs[0].state = State::Missing;
+        results.runs[0].records.clear();
+        let page = text(&files(&results), "report.html");
+        assert!(page.contains("not begun") && page.contains("no finished run of AMPCO"));
+    }
+}
