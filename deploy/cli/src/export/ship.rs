@@ -47,3 +47,48 @@ pub(super) fn write(kept: &Kept, folder: &Path) -> Result<Vec<(PathBuf, usize)>>
     files.sort();
     Ok(files)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evaluate::subject::Subject;
+    use crate::place::Place;
+
+    #[test]
+    fn a_shipped_policy_opens_like_a_checkpoint_and_ships_again() {
+        let walk = concat!(env!("CARGO_MANIFEST_DIR"), "/../policies/walk");
+        let place = Place {
+            runs_dir: "runs".into(),
+        };
+        let subject = Subject::open(&place, walk).unwrap();
+        // It acts: the mean action on a standing robot's observation is finite and not nothing.
+        let mut policy = subject.policy().unwrap();
+        let (observation, mut action) = ([0.1; policy::INPUTS], [0.0; policy::OUTPUTS]);
+        policy.means(&observation, 1, &mut action);
+        assert!(action.iter().all(|a| a.is_finite()) && action.iter().any(|a| a.abs() > 0.01));
+
+        let folder = tempfile::tempdir().unwrap();
+        let again = folder.path().join("policies/walk");
+        let files = write(&subject.kept, &again).unwrap();
+        assert_eq!(files.len(), 4);
+        for name in ["policy.bin", "judge.bin", "config.toml"] {
+            let bytes = |folder: &Path| std::fs::read(folder.join(name)).unwrap();
+            assert_eq!(bytes(&again), bytes(Path::new(walk)), "{name}");
+        }
+        assert_eq!(
+            Kept::open(&place, again.to_str().unwrap())
+                .unwrap()
+                .iteration,
+            subject.kept.iteration
+        );
+        // Nothing is written over.
+        let error = write(&subject.kept, &again).unwrap_err().to_string();
+        assert!(error.contains("is there already"), "{error}");
+        assert_eq!(
+            std::fs::read_dir(folder.path().join("policies"))
+                .unwrap()
+                .count(),
+            1
+        );
+    }
+}
