@@ -3,13 +3,17 @@
 //! In lock-step the rule of iteration n + 1 is the answer to report n, whoever is faster, so the
 //! learner waits for it; a scheduler that is away is waited for once, and the last word stays.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use ampco::{Granularity, Rule};
 use anyhow::{Context, Result};
 use protocol::{Answer, Directive, DirectiveSubscriber};
 use serde::{Deserialize, Serialize};
 use tracing::{info, warn};
+
+/// An answer takes milliseconds; after so long a report is sent again. It is answered alike, however
+/// often it comes.
+const ASK_AGAIN: Duration = Duration::from_millis(300);
 
 /// How the next batch is paid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,20 +66,16 @@ impl Guidance {
     }
 
     /// The guide for the iteration after `iteration`, of which a report was sent (or none, at 0).
-    pub(crate) fn after(&mut self, iteration: u64) -> Result<Guide> {
+    /// `report_again` sends it once more, to a scheduler that was killed and has not heard it.
+    pub(crate) fn after(
+        &mut self,
+        iteration: u64,
+        report_again: impl FnMut() -> Result<()>,
+    ) -> Result<Guide> {
         if iteration == 0 {
             return Ok(self.guide);
         }
-        // Once away, it is not waited for again until it has spoken.
-        let patience = if self.away {
-            Duration::ZERO
-        } else {
-            self.patience
-        };
-        match self
-            .directives
-            .wait_for(self.learner, iteration, patience)?
-        {
+        match self.wait_for(iteration, report_again)? {
             Answer::Came(directive) => {
                 if self.away {
                     info!(iteration, "the scheduler is back");
@@ -99,6 +99,29 @@ impl Guidance {
             }
         }
         Ok(self.guide)
+    }
+
+    fn wait_for(
+        &mut self,
+        iteration: u64,
+        mut report_again: impl FnMut() -> Result<()>,
+    ) -> Result<Answer> {
+        // Once away, it is not waited for again until it has spoken.
+        let patience = if self.away {
+            Duration::ZERO
+        } else {
+            self.patience
+        };
+        let deadline = Instant::now() + patience;
+        loop {
+            let left = deadline.saturating_duration_since(Instant::now());
+            let slice = left.min(ASK_AGAIN);
+            let answer = self.directives.wait_for(self.learner, iteration, slice)?;
+            if answer != Answer::Late || left <= ASK_AGAIN {
+                return Ok(answer);
+            }
+            report_again()?;
+        }
     }
 
     /// Whether the scheduler failed to answer when it was last waited for.

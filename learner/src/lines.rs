@@ -14,13 +14,13 @@ use serde::Serialize;
 use tracing::{info, warn};
 
 use crate::config::LearnerConfig;
-use crate::guidance::Guidance;
+use crate::guidance::{Guidance, Guide};
 use crate::intake::Intake;
 use crate::state::State;
 
 pub(crate) struct Lines {
     pub(crate) intake: Intake,
-    pub(crate) guidance: Guidance,
+    guidance: Guidance,
     metrics: Metrics,
     /// The last line of the metrics could not be written.
     unwritten: bool,
@@ -135,6 +135,23 @@ impl Lines {
             self.rewards.send(report.message())?;
         }
         Ok(())
+    }
+
+    /// How the next batch is paid, once the scheduler has answered.
+    pub(crate) fn guide(&mut self, state: &mut State) -> Result<Guide> {
+        let (rewards, report) = (&mut self.rewards, state.last_report);
+        let report_again = || match report {
+            Some(report) => Ok(rewards.send(report.message())?),
+            None => Ok(()),
+        };
+        let guide = self.guidance.after(state.reported(), report_again)?;
+        state.remembered = self.guidance.remember();
+        Ok(guide)
+    }
+
+    /// Whether the scheduler failed to answer when it was last waited for.
+    pub(crate) fn is_scheduler_away(&self) -> bool {
+        self.guidance.is_away()
     }
 
     /// Gives the actors the newest policy, and something to do with it.

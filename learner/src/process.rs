@@ -59,8 +59,7 @@ pub fn run(run_dir: &Path, resume: bool) -> Result<()> {
             break;
         };
         let gather_seconds = began.elapsed().as_secs_f64() - broadcast_seconds;
-        let guide = lines.guidance.after(state.reported())?;
-        state.remembered = lines.guidance.remember();
+        let guide = lines.guide(&mut state)?;
         let learned = state.learn(&batch, &learner.config, &guide);
         let span = Span {
             began,
@@ -196,7 +195,7 @@ impl Loop {
             phase: guide.directive.map_or(1, |directive| directive.phase),
             task_weight: 1.0 - report.style_weight,
             learning: record::figures(report),
-            decision: DecisionFigures::of(guide, lines.guidance.is_away()),
+            decision: DecisionFigures::of(guide, lines.is_scheduler_away()),
             gait: measures.into(),
             traffic: Traffic::of(
                 gathered,

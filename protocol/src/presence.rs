@@ -144,6 +144,8 @@ impl Membership {
             .signal_handling_mode(SignalHandlingMode::Disabled)
             .create::<Service>()
             .map_err(|error| refused(format!("{error:?}")))?;
+        room::make_private(domain.prefix())
+            .map_err(|error| refused(format!("making its memory private: {error}")))?;
         let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH);
         Ok(Self {
             handle,

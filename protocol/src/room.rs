@@ -5,8 +5,9 @@
 //! process with SIGBUS, possibly hours later and in another process.
 
 use std::fmt::Display;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File, OpenOptions, Permissions};
 use std::io;
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::PathBuf;
 
 use rustix::fs::{FallocateFlags, fallocate, statvfs};
@@ -53,6 +54,33 @@ pub(crate) fn commit(stream: &'static str, prefix: &str, suffix: &str) -> Result
         }),
         Err(error) => Err(described(&error)),
     }
+}
+
+/// Takes from other users what the middleware left them of our segments: it makes those in which it
+/// keeps its own accounts readable and writable for everyone.
+pub(crate) fn make_private(prefix: &str) -> io::Result<()> {
+    for entry in fs::read_dir(SHARED_MEMORY)? {
+        let entry = entry?;
+        if !entry
+            .file_name()
+            .as_encoded_bytes()
+            .starts_with(prefix.as_bytes())
+        {
+            continue;
+        }
+        // A segment may vanish with its process while we look, and be another run's by then.
+        let Ok(facts) = entry.metadata() else {
+            continue;
+        };
+        if facts.mode() & 0o077 != 0 && facts.uid() == rustix::process::getuid().as_raw() {
+            let private = Permissions::from_mode(facts.mode() & 0o700);
+            match fs::set_permissions(entry.path(), private) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
+        }
+    }
+    Ok(())
 }
 
 fn open(prefix: &str, suffix: &str) -> io::Result<(PathBuf, File)> {

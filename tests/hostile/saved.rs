@@ -69,6 +69,7 @@ fn a_damaged_state_of_the_learner_is_refused_and_leaves_it_as_it_was() {
         discriminator: DiscriminatorConfig {
             hidden: vec![4],
             replay_capacity: 4,
+            replay_insert: 4,
             ..DiscriminatorConfig::default()
         },
         ..LearningConfig::default()

@@ -41,7 +41,7 @@ fn breathe(mode: &str, most: u32) -> Vec<Value> {
             "--set",
             &mode,
             "--set",
-            "run.deadlines.rollout_seconds=3",
+            "run.deadlines.rollout_seconds=5",
         ],
     );
     until_iteration(&runs.run("elastic"), 2);
@@ -75,8 +75,8 @@ fn breathe(mode: &str, most: u32) -> Vec<Value> {
     metrics(&runs.run("elastic"))
 }
 
-/// Rows follow the actors, and no iteration waited for one that was gone longer than its deadline of 3 s
-/// allows; twice that on a busy machine.
+/// Rows follow the actors, and no iteration waited for one that was gone longer than its deadline of 5 s
+/// allows, and some more on a busy machine.
 fn assert_followed(lines: &[Value], most: u64) {
     let mut before = 0;
     for line in lines {
@@ -86,7 +86,7 @@ fn assert_followed(lines: &[Value], most: u64) {
         assert_eq!(samples - before, 8 * rollouts, "{line}"); // 8 steps of one robot
         before = samples;
         let waited = line["timing"]["gather_seconds"].as_f64().expect("a number");
-        assert!(waited < 10.0, "{line}");
+        assert!(waited < 15.0, "{line}");
     }
 }
 

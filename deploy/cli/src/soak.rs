@@ -26,6 +26,9 @@ use outcome::{Outcome, Victim};
 /// Kills, when neither number nor time is given.
 const KILLS: u64 = 20;
 
+/// A week.
+const LONGEST_MINUTES: f64 = 10_080.0;
+
 /// Between two looks at the group.
 const LOOK: Duration = Duration::from_millis(20);
 
@@ -73,8 +76,11 @@ pub(crate) struct Soak {
 
 impl Soak {
     pub(crate) fn run(&self) -> Result<()> {
-        if self.minutes.is_some_and(|minutes| !(minutes > 0.0)) {
-            return Err(usage("--minutes is a time; give more than 0"));
+        let is_time = |minutes: f64| minutes > 0.0 && minutes <= LONGEST_MINUTES;
+        if self.minutes.is_some_and(|minutes| !is_time(minutes)) {
+            return Err(usage(format!(
+                "--minutes is a time; give more than 0 and at most {LONGEST_MINUTES}"
+            )));
         }
         let shutdown = Shutdown::on_signals()?;
         let mut session = Session::begin(self, &shutdown)?;

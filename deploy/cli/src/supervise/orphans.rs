@@ -14,7 +14,7 @@ use tokio::time::sleep;
 use super::LOOK;
 
 /// Orphans get this long to save what they have, and then no more: a checkpoint is there anyway.
-const GRACE: Duration = Duration::from_secs(2);
+const GRACE: Duration = Duration::from_millis(1500);
 
 /// Longest that the kernel may take to end a killed process.
 const PATIENCE: Duration = Duration::from_secs(10);
