@@ -220,8 +220,17 @@ impl Intake {
                 self.terms.layout
             );
         }
-        let fate = match self.ledger.enter(&header, self.learner, oldest) {
-            Entry::Fresh => self.seat(rollout, now),
+        let entry = self.ledger.enter(&header, self.learner, oldest);
+        // Overlapped, of many actors some always come too late: they live all the same, and the next
+        // batch has a place for them.
+        let counts =
+            entry == Entry::Fresh || !self.terms.lockstep && header.learner == self.learner;
+        let newcomer = counts && self.roster.join(header.actor);
+        if newcomer {
+            info!(actor = header.actor, "actor joined");
+        }
+        let fate = match entry {
+            Entry::Fresh => self.seat(rollout, newcomer, now),
             Entry::Stale => "stale",
             Entry::Duplicate => "duplicate",
         };
@@ -241,13 +250,9 @@ impl Intake {
     }
 
     /// Copies a fresh rollout to its seat. Returns its fate.
-    fn seat(&mut self, rollout: &Rollout, now: &mut Gathering<'_>) -> &'static str {
+    fn seat(&mut self, rollout: &Rollout, newcomer: bool, now: &mut Gathering<'_>) -> &'static str {
         let header = *rollout.header();
         let layout = self.terms.layout;
-        let newcomer = self.roster.join(header.actor);
-        if newcomer {
-            info!(actor = header.actor, "actor joined");
-        }
         let fits = |seat: &Seat| !seat.taken && seat.actor.is_none_or(|own| own == header.actor);
         let mut place = now.seats.iter().position(fits);
         if let Some(flaw) = rollout.flaw() {
