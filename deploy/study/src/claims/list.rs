@@ -272,7 +272,7 @@ fn overhead(results: &Results) -> Finding {
             Verdict::Contradicted
         },
         words: format!(
-            "over {} runs at most {:.5} % of a cycle for the scheduler's decision and {:.5} % for weighting in the learner",
+            "over {} runs at most {:.5} % of a cycle (medians) for the scheduler's decision and {:.5} % for weighting in the learner",
             measured.len(),
             100.0 * decision,
             100.0 * weighting

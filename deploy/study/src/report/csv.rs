@@ -18,7 +18,7 @@ pub(super) fn runs(results: &Results) -> String {
         let _ = write!(text, ",{}_{}", metric.key(), column.key());
     });
     text.push_str(
-        ",switched_at,lower_bound,upper_bound,decision_share,weighting_share,decision_us,weighting_us,cycle_s,folder\n",
+        ",switched_at,lower_bound,upper_bound,decision_share,weighting_share,decision_share_of_sums,decision_us,weighting_us,cycle_s,folder\n",
     );
     for run in &results.runs {
         let newest = run.records.last().cloned().unwrap_or_default();
@@ -47,12 +47,13 @@ pub(super) fn runs(results: &Results) -> String {
         let of = |part: fn(&Overhead) -> f64| optional(overhead.as_ref().map(part));
         let _ = writeln!(
             text,
-            ",{},{},{},{},{},{},{},{},{}",
+            ",{},{},{},{},{},{},{},{},{},{}",
             optional(newest.switched_at),
             optional(newest.lower_bound),
             optional(newest.upper_bound),
             of(|overhead| overhead.decision_share),
             of(|overhead| overhead.weighting_share),
+            of(|overhead| overhead.decision_share_of_sums),
             of(|overhead| 1e6 * overhead.decision),
             of(|overhead| 1e6 * overhead.weighting),
             of(|overhead| overhead.cycle),

@@ -237,13 +237,14 @@ fn overhead(results: &Results) -> String {
         "In the runs",
         "training cycle",
         "scheduler's decision",
-        "share of all cycles",
+        "share of a cycle",
         "weighting in the learner",
-        "share of all cycles",
+        "share of a cycle",
     ]);
     let _ = write!(
         html,
-        "<p>Times are medians, shares are of sums; the paper: less than 0.012 % for both together, of a cycle of 2.1 s.</p>\n{}",
+        "<p>Medians by the wall clock, and shares of the median cycle (sums, which hold whatever interrupted a decision, are in \
+         runs.csv); the paper: less than 0.012 % for both together, of a cycle of 2.1 s.</p>\n{}",
         table(&head, &rows)
     );
     html
@@ -343,7 +344,7 @@ fn runs(results: &Results) -> String {
         })
         .collect();
     format!(
-        "<h2 id=\"runs\">Runs</h2>\n<p>Each folder holds <code>config.toml</code> (every value) and \
+        "<h2 id=\"runs\">Runs</h2>\n<p>Each folder lies in <code>runs/</code> of the study's folder and holds <code>config.toml</code> (every value) and \
          <code>metrics.jsonl</code> (a line per iteration), from which the numbers here are computed: final values from \
          the last lines that hold 1,000 control steps, peaks from the lines after the first 1,000.</p>\n{}",
         table(&head(&titles), &rows)
