@@ -161,6 +161,9 @@ impl<S: Stream> Publisher<S> {
                 tracing::warn!(stream = S::SPEC.name, ?error, "message lost");
                 Ok(SendOutcome::Lost)
             }
+            // A signal came while it waited for room, mostly the one to stop; the middleware tells it
+            // from nothing worse.
+            Err(SendError::InternalError) => Ok(SendOutcome::Interrupted),
             Err(error) => Err(system::<S>("sending", error)),
         }
     }
