@@ -11,7 +11,7 @@ use rand_pcg::Pcg64Mcg;
 use run::Checkpoints;
 use run::checkpoint::robots_of;
 use serde::{Deserialize, Serialize};
-use sim::{Fleet, TaskConfig};
+use sim::Fleet;
 use tracing::{info, warn};
 
 use crate::collect::{Timing, collect};
@@ -46,8 +46,8 @@ impl Worker {
     ) -> Result<Self> {
         let seed = mix(mix(config.seed, u64::from(index) + 1), header.version);
         let fleet = Fleet::new(
-            &task_at(config, header),
-            &config.randomization,
+            &config.task.at(samples(config, header)),
+            &config.randomization.at(samples(config, header)),
             config.starts.clone(),
             config.layout.environments,
             seed,
@@ -136,8 +136,13 @@ impl Worker {
         header: &WeightsHeader,
         flat: &[f32],
     ) -> Result<()> {
+        let samples = samples(config, header);
         if config.task.curriculum.is_some() {
-            self.fleet.set_task(task_at(config, header));
+            self.fleet.set_task(config.task.at(samples));
+        }
+        if config.randomization.grows() {
+            self.fleet
+                .set_randomization(config.randomization.at(samples));
         }
         let shape = shape(header, flat.len())?;
         if *self.policy.shape() != shape {
@@ -182,9 +187,9 @@ fn shape(header: &WeightsHeader, weights: usize) -> Result<Shape> {
     Ok(shape)
 }
 
-/// The task by now: iterations of full batches have made the weights.
-fn task_at(config: &ActorConfig, header: &WeightsHeader) -> TaskConfig {
-    config.task.at((header.version * config.rows) as f64)
+/// Samples of the whole group by now: iterations of full batches have made the weights.
+fn samples(config: &ActorConfig, header: &WeightsHeader) -> f64 {
+    (header.version * config.rows) as f64
 }
 
 /// One well-mixed number of two (SplitMix64's finaliser), so that neighbours share no stream.

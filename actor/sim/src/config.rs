@@ -66,6 +66,17 @@ pub(crate) fn range(field: &'static str, value: [f32; 2]) -> Result<(), Invalid>
     )
 }
 
+/// How far the way between two numbers of samples is gone, 0 to 1.
+pub(crate) fn progress([from, to]: [f64; 2], samples: f64) -> f32 {
+    if samples <= from {
+        0.0
+    } else if samples >= to {
+        1.0
+    } else {
+        ((samples - from) / (to - from)) as f32
+    }
+}
+
 /// A number of control steps for a duration drawn from a range of seconds; at least one.
 pub(crate) fn steps(seconds: [f32; 2], rng: &mut impl Rng) -> u32 {
     let seconds = rng.random_range(seconds[0]..=seconds[1]);

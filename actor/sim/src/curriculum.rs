@@ -76,18 +76,6 @@ impl CurriculumConfig {
         }
         Ok(())
     }
-
-    /// How far the way is gone, 0 to 1.
-    fn progress(&self, samples: f64) -> f32 {
-        let way = self.to_samples - self.from_samples;
-        if samples <= self.from_samples {
-            0.0
-        } else if samples >= self.to_samples {
-            1.0
-        } else {
-            ((samples - self.from_samples) / way) as f32
-        }
-    }
 }
 
 impl TaskConfig {
@@ -97,7 +85,7 @@ impl TaskConfig {
         let Some(curriculum) = &self.curriculum else {
             return task;
         };
-        let progress = curriculum.progress(samples);
+        let progress = config::progress([curriculum.from_samples, curriculum.to_samples], samples);
         let go = |value: &mut f32, to: Option<f32>| {
             if let Some(to) = to {
                 // Exact at both ends.

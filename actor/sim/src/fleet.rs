@@ -205,6 +205,12 @@ impl Fleet {
         };
     }
 
+    /// Goes on with other ranges of Table I: noise and pushes from the next step, robots and floors from
+    /// their next episode.
+    pub fn set_randomization(&mut self, randomization: RandomizationConfig) {
+        self.setting.randomization = randomization;
+    }
+
     /// Holds a command for the rest of an environment's episode. Its observation shows it at once.
     pub fn hold_command(&mut self, environment: usize, command: [f32; 3]) {
         self.environments[environment].hold_command(command);

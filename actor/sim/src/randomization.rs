@@ -16,6 +16,11 @@ use std::ops::Range;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RandomizationConfig {
+    /// Samples of the whole group until the table begins to count. Default 0, from the start: robots
+    /// that cannot walk yet learn slower on one that is never the same.
+    pub from_samples: f64,
+    /// Samples at which it counts in full; in between, ranges grow in a straight line. Default 0.
+    pub to_samples: f64,
     /// Vary the torso's mass each episode.
     pub mass_variation: bool,
     /// Added mass, kg.
@@ -59,6 +64,8 @@ pub struct RandomizationConfig {
 impl Default for RandomizationConfig {
     fn default() -> Self {
         Self {
+            from_samples: 0.0,
+            to_samples: 0.0,
             mass_variation: true,
             mass_range: [-0.5, 0.5],
             friction: true,
@@ -101,6 +108,14 @@ impl RandomizationConfig {
 
     /// Checks every field; names the first bad one, its value and a remedy.
     pub fn validate(&self) -> Result<(), Invalid> {
+        config::require(
+            self.from_samples >= 0.0
+                && self.from_samples <= self.to_samples
+                && self.to_samples.is_finite(),
+            "from_samples",
+            (self.from_samples, self.to_samples),
+            "give numbers of samples from 0 on, to_samples no less than from_samples",
+        )?;
         range("mass_range", self.mass_range)?;
         // The torso weighs 7.8 kg and has to keep a positive mass.
         config::at_least("mass_range[0]", self.mass_range[0], -7.0)?;
@@ -115,6 +130,39 @@ impl RandomizationConfig {
         range("gravity_range", self.gravity_range)?;
         range("joint_position_range", self.joint_position_range)?;
         range("joint_velocity_range", self.joint_velocity_range)
+    }
+
+    /// The table after a number of samples of the whole group: ranges between nothing (friction: 1) and
+    /// themselves.
+    pub fn at(&self, samples: f64) -> Self {
+        if !self.grows() {
+            return self.clone();
+        }
+        let part = config::progress([self.from_samples, self.to_samples], samples);
+        if part == 0.0 {
+            return Self::none();
+        }
+        let grown = |range: [f32; 2], nothing: f32| {
+            // Exact at both ends.
+            range.map(|end| nothing * (1.0 - part) + end * part)
+        };
+        Self {
+            mass_range: grown(self.mass_range, 0.0),
+            friction_range: grown(self.friction_range, Variation::NOMINAL.friction),
+            com_range: grown(self.com_range, 0.0),
+            impulse_range: grown(self.impulse_range, 0.0),
+            linear_velocity_range: grown(self.linear_velocity_range, 0.0),
+            angular_velocity_range: grown(self.angular_velocity_range, 0.0),
+            gravity_range: grown(self.gravity_range, 0.0),
+            joint_position_range: grown(self.joint_position_range, 0.0),
+            joint_velocity_range: grown(self.joint_velocity_range, 0.0),
+            ..self.clone()
+        }
+    }
+
+    /// Whether the table changes with the samples.
+    pub fn grows(&self) -> bool {
+        self.to_samples > 0.0
     }
 
     /// The robot and the floor of a new episode.

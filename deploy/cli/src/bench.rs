@@ -6,6 +6,7 @@
 mod fidelity;
 mod ipc;
 mod learner;
+mod products;
 mod scheduler;
 mod sim;
 

@@ -149,9 +149,7 @@ impl Discriminator {
             figures.gradient_penalty += step.gradient_penalty / steps as f64;
             figures.loss += step.loss / steps as f64;
         }
-        if let Some(index) = first_not_finite(&self.weights) {
-            return Err(Fault::new(self.name(index), self.weights[index]));
-        }
+        self.check_weights()?;
         Ok(figures)
     }
 
@@ -177,15 +175,7 @@ impl Discriminator {
             total.penalty += part.penalty;
             total.loss += part.loss;
         }
-        if !total.loss.is_finite() {
-            return Err(Fault::new("discriminator loss", total.loss));
-        }
-        if let Some(index) = first_not_finite(&total.gradient) {
-            return Err(Fault::new(
-                format!("gradient of {}", self.name(index)),
-                total.gradient[index],
-            ));
-        }
+        self.check(&total)?;
         self.adam.step(
             &mut self.weights,
             &total.gradient,
@@ -197,6 +187,29 @@ impl Discriminator {
             gradient_penalty: total.penalty,
             loss: total.loss,
         })
+    }
+
+    /// Refuses what would spoil the weights.
+    fn check(&self, total: &Sums) -> Result<(), Fault> {
+        if !total.loss.is_finite() {
+            // A broken weight breaks every loss after it: it is the cause to name.
+            self.check_weights()?;
+            return Err(Fault::new("discriminator loss", total.loss));
+        }
+        match first_not_finite(&total.gradient) {
+            Some(index) => Err(Fault::new(
+                format!("gradient of {}", self.name(index)),
+                total.gradient[index],
+            )),
+            None => Ok(()),
+        }
+    }
+
+    fn check_weights(&self) -> Result<(), Fault> {
+        match first_not_finite(&self.weights) {
+            Some(index) => Err(Fault::new(self.name(index), self.weights[index])),
+            None => Ok(()),
+        }
     }
 
     /// Gradient and figures of a part of a step's rows.

@@ -198,9 +198,7 @@ impl Ppo {
             }
         }
         self.order = order;
-        if let Some(index) = first_not_finite(&self.weights) {
-            return Err(Fault::new(self.name(index), self.weights[index]));
-        }
+        self.check_weights()?;
         if self.config.schedule == RateSchedule::PerIteration {
             self.follow(figures.kl);
         }
@@ -239,21 +237,7 @@ impl Ppo {
             total.kl_rows += part.kl_rows;
             total.clipped += part.clipped;
         }
-        for (what, value) in [
-            ("surrogate loss", total.surrogate),
-            ("value loss", total.value_loss),
-        ] {
-            if !value.is_finite() {
-                return Err(Fault::new(what, value));
-            }
-        }
-        let norm = clip_norm(&mut total.gradient, self.config.gradient_norm);
-        if let Some(index) = first_not_finite(&total.gradient) {
-            return Err(Fault::new(
-                format!("gradient of {}", self.name(index)),
-                total.gradient[index],
-            ));
-        }
+        let norm = self.check(&mut total)?;
         if self.config.schedule == RateSchedule::PerMinibatch {
             self.follow(total.kl / total.kl_rows.max(1) as f64);
         }
@@ -273,6 +257,35 @@ impl Ppo {
             clipped: total.clipped,
             norm: f64::from(norm),
         })
+    }
+
+    /// Clips the gradient to its greatest norm, and refuses what would spoil the weights; the norm before.
+    fn check(&self, total: &mut part::Sums) -> Result<f32, Fault> {
+        for (what, value) in [
+            ("surrogate loss", total.surrogate),
+            ("value loss", total.value_loss),
+        ] {
+            if !value.is_finite() {
+                // A broken weight breaks every loss after it: it is the cause to name.
+                self.check_weights()?;
+                return Err(Fault::new(what, value));
+            }
+        }
+        let norm = clip_norm(&mut total.gradient, self.config.gradient_norm);
+        match first_not_finite(&total.gradient) {
+            Some(index) => Err(Fault::new(
+                format!("gradient of {}", self.name(index)),
+                total.gradient[index],
+            )),
+            None => Ok(norm),
+        }
+    }
+
+    fn check_weights(&self) -> Result<(), Fault> {
+        match first_not_finite(&self.weights) {
+            Some(index) => Err(Fault::new(self.name(index), self.weights[index])),
+            None => Ok(()),
+        }
     }
 
     /// ln σ `[1, 23]`: a differentiable weight if it is learned, else that of the given σ.

@@ -172,3 +172,29 @@ fn impossible_ranges_are_refused() {
             .contains("com_range")
     );
 }
+
+#[test]
+fn the_table_grows_with_the_samples() {
+    let config = RandomizationConfig {
+        from_samples: 1e6,
+        to_samples: 3e6,
+        gravity_noise: false,
+        ..RandomizationConfig::default()
+    };
+    config.validate().unwrap();
+    assert_eq!(config.at(1e6), RandomizationConfig::none());
+    let half = config.at(2e6);
+    assert_eq!(half.mass_range, [-0.25, 0.25]);
+    assert_eq!(half.friction_range, [0.75, 1.0]); // halfway from 1
+    assert_eq!(half.joint_velocity_range, [-0.75, 0.75]);
+    assert!(half.impulse && !half.gravity_noise);
+    assert_eq!(config.at(9e6), config);
+    let whole = RandomizationConfig::default();
+    assert_eq!(whole.at(0.0), whole);
+    let backward = RandomizationConfig {
+        to_samples: 0.5e6,
+        ..config
+    };
+    let error = backward.validate().unwrap_err().to_string();
+    assert!(error.contains("from_samples"), "{error}");
+}

@@ -18,6 +18,8 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde_json::{Value, json};
 
+use super::products;
+
 /// Rows of a timed step, as in the figures that other trainers publish.
 const ROWS: usize = 4096;
 
@@ -60,15 +62,35 @@ impl LearnerBench {
         let defaults = LearningConfig::default();
         let default = sized(&defaults.policy.hidden, &defaults.discriminator.hidden);
         let (iteration, parts) = self.iteration(default.clone())?;
+        let mut iterations = Vec::new();
+        for (networks, config) in [("default", &default), ("512-256-128", &large)] {
+            for epochs in [1, 5] {
+                let mut config = config.clone();
+                config.ppo.epochs = epochs;
+                let seconds = self.iteration(config)?.0;
+                iterations.push(json!({
+                    "networks": networks,
+                    "epochs": epochs,
+                    "samples_per_second": (self.environments * self.steps) as f64 / seconds,
+                }));
+            }
+        }
+        let widths = [OBSERVATION, 512, 256, 128];
+        let [actor, critic] = [ACTION, 1].map(|outputs| [&widths[..], &[outputs]].concat());
         let rows = (self.environments * self.steps) as f64;
         Ok(json!({
             "ppo_ms_4096": self.ppo_ms(large.clone())?,
+            "ppo_products_ms_4096": self.median_ms(|| {
+                products::multiply(&[&actor, &critic], ROWS, self.threads);
+                Ok(())
+            })?,
             "discriminator_ms_4096": self.discriminator_ms(large, ROWS / 2)?,
             "ppo_default_ms_4096": self.ppo_ms(default.clone())?,
             "discriminator_default_ms_4096": self.discriminator_ms(default, ROWS / 2)?,
             "samples_per_second": rows / iteration,
             "iteration_ms": 1e3 * iteration,
             "iteration_parts_ms": parts,
+            "iterations": iterations,
             "rows": rows,
             "threads": self.threads,
             "repetitions": self.repetitions,

@@ -10,7 +10,7 @@ use sim::{Fleet, LastStep, RandomizationConfig, Starts, StepRows};
 use super::judge::Judge;
 use super::scenario::Scenario;
 use super::subject::{Kept, Subject};
-use super::tally::{Sample, Tally, Trace};
+use super::tally::{SETTLING, Sample, Tally, Trace};
 
 /// Robots that are stepped together. Fixed, so that results do not depend on the number of threads.
 pub(super) const TOGETHER: usize = 16;
@@ -81,8 +81,13 @@ impl<'a> Walker<'a> {
             traces: vec![Trace::default(); n],
             ..Tally::default()
         };
+        // The command, and since when.
+        let mut held = (scenario.command(0, conditions.steps), 0);
         for step in 0..conditions.steps {
             let command = scenario.command(step, conditions.steps);
+            if command != held.0 {
+                held = (command, step);
+            }
             for robot in 0..n {
                 if fleet.command(robot) != command {
                     fleet.hold_command(robot, command);
@@ -102,6 +107,10 @@ impl<'a> Walker<'a> {
                 self.judge.take(robot, step == 0, before, after);
                 let last = &fleet.last_step(robot);
                 tally.add(&block, robot, command, last, life.forces);
+                if step >= held.1 + SETTLING {
+                    tally.settled_steps += 1.0;
+                    tally.settled_error += f64::from(block.rows.tracking_errors[robot]);
+                }
                 if conditions.traced {
                     tally.traces[robot].samples.push(sample(last));
                 }

@@ -14,12 +14,13 @@ const fn column(name: &'static str, unit: &'static str, value: fn(&Row) -> Strin
 }
 
 /// From left to right.
-pub(super) const COLUMNS: [Column; 18] = [
+pub(super) const COLUMNS: [Column; 19] = [
     column("scenario", "", |row| row.name.clone()),
     column("survival", "%", |row| {
         digits(100.0 * row.outcome.survival, 1)
     }),
     column("rmse", "m/s", |row| digits(row.outcome.rmse, 3)),
+    column("settled", "m/s", |row| or_dash(row.outcome.rmse_settled, 3)),
     column("lateral", "m/s", |row| digits(row.outcome.rmse_lateral, 3)),
     column("yaw", "rad/s", |row| digits(row.outcome.rmse_yaw_rate, 3)),
     column("energy", "J/1000", |row| digits(row.outcome.energy_j, 0)),
@@ -48,7 +49,8 @@ pub(super) const COLUMNS: [Column; 18] = [
 /// What the columns mean, for whoever reads a report.
 pub(super) const LEGEND: &str = "\
 - survival: episodes without a fall. Everything else is measured until the fall.
-- rmse: root mean squared planar velocity error (III-F); lateral: its sideways part; yaw: of the yaw rate.
+- rmse: root mean squared planar velocity error (III-F); settled: without the first two seconds after a start
+  or a new command; lateral: its sideways part; yaw: of the yaw rate.
 - energy: positive mechanical work of a robot per 1,000 control steps (20 s), without exploration noise.
 - style: the discriminator's reward (Eq. 7), 0 to 1.
 - hips: correlation of left and right hip pitch, −1 a walk, +1 a hop.

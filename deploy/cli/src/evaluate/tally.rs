@@ -7,6 +7,9 @@ use serde::Serialize;
 /// Steps per second.
 pub(super) const CONTROL_HZ: f64 = 50.0;
 
+/// Steps after a start or a new command until a robot counts as settled: two seconds to set off or turn in.
+pub(super) const SETTLING: u32 = 100;
+
 /// Sums over the steps of robots on their feet.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tally {
@@ -14,6 +17,9 @@ pub(super) struct Tally {
     pub(super) fallen: usize,
     pub(super) steps: f64,
     pub(super) squared_error: f64,
+    /// Steps of settled robots, and the squared error in them.
+    pub(super) settled_steps: f64,
+    pub(super) settled_error: f64,
     /// Squared errors of forward velocity, lateral velocity and yaw rate.
     pub(super) squared_errors: [f64; 3],
     pub(super) energy: f64,
@@ -51,6 +57,8 @@ impl Tally {
         self.fallen += other.fallen;
         self.steps += other.steps;
         self.squared_error += other.squared_error;
+        self.settled_steps += other.settled_steps;
+        self.settled_error += other.settled_error;
         for axis in 0..3 {
             self.squared_errors[axis] += other.squared_errors[axis];
         }
@@ -89,6 +97,8 @@ impl Tally {
             survival: (self.episodes - self.fallen) as f64 / self.episodes as f64,
             seconds_survived: self.seconds_survived(),
             rmse: root(self.squared_error),
+            rmse_settled: (self.settled_steps > 0.0)
+                .then(|| (self.settled_error / self.settled_steps).sqrt()),
             rmse_forward: root(self.squared_errors[0]),
             rmse_lateral: root(self.squared_errors[1]),
             rmse_yaw_rate: root(self.squared_errors[2]),
@@ -129,6 +139,8 @@ pub(super) struct Outcome {
     pub(super) seconds_survived: f64,
     /// √(mean ‖v* − v‖²), planar, heading frame, m/s (III-F).
     pub(super) rmse: f64,
+    /// The same without the first two seconds after a start or a new command: no robot goes at 2 m/s at once.
+    pub(super) rmse_settled: Option<f64>,
     /// Its forward part, m/s.
     pub(super) rmse_forward: f64,
     /// Its lateral part, m/s.
@@ -182,6 +194,8 @@ mod tests {
             fallen: 1,
             steps: 100.0,
             squared_error: 25.0,
+            settled_steps: 50.0,
+            settled_error: 2.0,
             squared_errors: [16.0, 9.0, 1.0],
             energy: 200.0,
             ..Tally::default()
@@ -190,6 +204,8 @@ mod tests {
             episodes: 2,
             steps: 300.0,
             squared_error: 75.0,
+            settled_steps: 150.0,
+            settled_error: 6.0,
             squared_errors: [48.0, 27.0, 3.0],
             energy: 600.0,
             ..Tally::default()
@@ -198,6 +214,7 @@ mod tests {
         assert_eq!(outcome.survival, 0.75);
         assert_eq!(outcome.seconds_survived, 2.0); // 400 steps / 4 / 50 Hz
         assert_eq!(outcome.rmse, 0.5); // √(100 / 400)
+        assert_eq!(outcome.rmse_settled, Some(0.2)); // √(8 / 200)
         assert_eq!(outcome.rmse_forward, 0.4); // √(64 / 400)
         assert_eq!(outcome.rmse_yaw_rate, 0.1);
         assert_eq!(outcome.energy_j, 2_000.0); // 2 J a step

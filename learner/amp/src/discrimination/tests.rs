@@ -119,3 +119,30 @@ fn what_becomes_infinite_is_named() {
     assert_eq!(fault.what, "discriminator loss");
     assert_eq!(judge.name(0), "discriminator.layers.0.weight");
 }
+
+#[test]
+fn a_broken_gradient_or_weight_is_named() {
+    let mut judge = discriminator(&small(), 1);
+    let sound = Sums {
+        gradient: vec![0.1; judge.weights.len()],
+        ..Sums::default()
+    };
+    assert_eq!(judge.check(&sound), Ok(()));
+    let mut gradient = sound.gradient.clone();
+    gradient[0] = f32::NAN;
+    let broken = Sums {
+        gradient,
+        ..Sums::default()
+    };
+    let fault = judge.check(&broken).expect_err("NaN");
+    assert_eq!(fault.what, "gradient of discriminator.layers.0.weight");
+    let lossy = Sums {
+        loss: f64::INFINITY,
+        ..sound
+    };
+    let fault = judge.check(&lossy).expect_err("infinite");
+    assert_eq!(fault.what, "discriminator loss");
+    judge.weights[0] = f32::NAN;
+    let fault = judge.check(&lossy).expect_err("NaN");
+    assert_eq!(fault.what, "discriminator.layers.0.weight");
+}

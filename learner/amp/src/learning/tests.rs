@@ -170,6 +170,45 @@ fn a_bad_batch_or_a_failed_update_changes_nothing() {
     assert_eq!(learning.save(), before);
 }
 
+/// Makes an optimizer put an infinite number into the first weight that it moves.
+fn spoil(adam: &mut networks::Adam) {
+    let mut state = adam.state().clone();
+    state.first[0] = f32::INFINITY;
+    adam.restore(state).expect("the same length");
+}
+
+#[test]
+fn a_weight_that_breaks_in_an_update_is_named_and_the_good_ones_are_kept() {
+    for (in_policy, name) in [
+        (true, "actor.layers.0.weight"),
+        (false, "discriminator.layers.0.weight"),
+    ] {
+        let mut learning = learning();
+        run(&mut learning, 0, 2);
+        if in_policy {
+            spoil(learning.core.ppo.state_mut().1);
+        } else {
+            spoil(learning.core.discriminator.state_mut().1);
+        }
+        let before = learning.save();
+        let policy = learning.policy_flat().to_vec();
+        let next = batch(&learning, 2);
+        let error = learning.iterate(
+            &next,
+            &mut |rows: &mut [f32]| rows.fill(0.0),
+            RULE,
+            Granularity::Sample,
+        );
+        match error {
+            Err(LearningError::NotFinite { what, .. }) => assert_eq!(what, name),
+            other => panic!("{other:?}"),
+        }
+        assert_eq!(learning.save(), before);
+        assert_eq!(learning.policy_flat(), policy);
+        assert!(policy.iter().all(|weight| weight.is_finite()));
+    }
+}
+
 #[test]
 fn the_report_counts_what_the_batch_holds() {
     let mut learning = learning();

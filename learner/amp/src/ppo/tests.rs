@@ -242,3 +242,41 @@ fn what_becomes_infinite_is_named() {
     assert_eq!(ppo.name(first), "critic.layers.0.weight");
     assert_eq!(ppo.name(ppo.weights.len() - 1), "log_sigma");
 }
+
+#[test]
+fn a_gradient_that_is_none_is_named_and_not_followed() {
+    let ppo = ppo(&config());
+    let critic = ppo.actor.len();
+    for (place, value, name) in [
+        (3, f32::NAN, "gradient of actor.layers.0.weight"),
+        (critic, f32::INFINITY, "gradient of critic.layers.0.weight"),
+        (
+            ppo.weights.len() - 1,
+            f32::NEG_INFINITY,
+            "gradient of log_sigma",
+        ),
+    ] {
+        let mut sums = part::Sums {
+            gradient: vec![0.1; ppo.weights.len()],
+            ..part::Sums::default()
+        };
+        assert!(ppo.check(&mut sums).is_ok());
+        sums.gradient[place] = value;
+        assert_eq!(ppo.check(&mut sums).expect_err("not finite").what, name);
+    }
+}
+
+#[test]
+fn a_broken_weight_is_named_before_the_losses_that_it_breaks() {
+    let mut ppo = ppo(&config());
+    let sums = part::Sums {
+        surrogate: f64::NAN,
+        gradient: vec![0.0; ppo.weights.len()],
+        ..part::Sums::default()
+    };
+    let loss = ppo.check(&mut sums.clone()).expect_err("NaN");
+    assert_eq!(loss.what, "surrogate loss");
+    ppo.weights[0] = f32::INFINITY;
+    let weight = ppo.check(&mut sums.clone()).expect_err("infinite");
+    assert_eq!(weight, Fault::new("actor.layers.0.weight", f32::INFINITY));
+}
