@@ -20,6 +20,9 @@ pub struct CommandConfig {
     pub yaw_rate: [f32; 2],
     /// Share of drawn commands that are zero: stand still. Default 0.
     pub standing_share: f32,
+    /// Share of the others that have one part alone, forward, lateral or yaw rate, each as often.
+    /// Default 0: all three at once, and hardly ever straight on, aside or on the spot.
+    pub pure_share: f32,
     /// Seconds between new commands, drawn uniformly. Default 3 to 10, the span in use among
     /// published trainers.
     pub resample_seconds: [f32; 2],
@@ -35,6 +38,7 @@ impl Default for CommandConfig {
             lateral: [0.0, 0.0],
             yaw_rate: [0.0, 0.0],
             standing_share: 0.0,
+            pure_share: 0.0,
             resample_seconds: [3.0, 10.0],
             matched_share: 0.9,
         }
@@ -48,6 +52,7 @@ impl CommandConfig {
         range("command.lateral", self.lateral)?;
         range("command.yaw_rate", self.yaw_rate)?;
         config::share("command.standing_share", self.standing_share)?;
+        config::share("command.pure_share", self.pure_share)?;
         range("command.resample_seconds", self.resample_seconds)?;
         config::at_least(
             "command.resample_seconds[0]",
@@ -62,8 +67,17 @@ impl CommandConfig {
         // All numbers are drawn whatever the outcome, so that a change of one share leaves the rest
         // of a run's random sequence alone.
         let stand = rng.random::<f32>() < self.standing_share;
-        let command = [self.forward, self.lateral, self.yaw_rate]
+        let mut command = [self.forward, self.lateral, self.yaw_rate]
             .map(|[least, greatest]| rng.random_range(least..=greatest));
+        if self.pure_share > 0.0 {
+            let pure = rng.random::<f32>() < self.pure_share;
+            let part = rng.random_range(0..command.len());
+            if pure {
+                let value = command[part];
+                command = [0.0; 3];
+                command[part] = value;
+            }
+        }
         if stand { [0.0; 3] } else { command }
     }
 
@@ -111,6 +125,28 @@ mod tests {
             greatest = greatest.max(*vx);
         }
         assert!(least < -0.95 && greatest > 1.95, "{least} {greatest}");
+    }
+
+    #[test]
+    fn pure_commands_have_one_part() {
+        let config = CommandConfig {
+            forward: [0.1, 1.0],
+            lateral: [0.1, 0.4],
+            yaw_rate: [0.1, 1.0],
+            pure_share: 0.6,
+            ..CommandConfig::default()
+        };
+        let mut rng = Pcg64Mcg::seed_from_u64(4);
+        let mut counts = [0; 4]; // forward, lateral, yaw rate alone; all
+        for _ in 0..4_000 {
+            let command = config.draw(&mut rng);
+            let parts: Vec<_> = (0..3).filter(|&part| command[part] != 0.0).collect();
+            counts[if let [part] = parts[..] { part } else { 3 }] += 1;
+        }
+        // Binomial(4000, 0.2) has a deviation of 25, Binomial(4000, 0.4) of 31.
+        for (count, expected) in counts.into_iter().zip([800_i32, 800, 800, 1_600]) {
+            assert!((expected - count).abs() < 155, "{counts:?}");
+        }
     }
 
     #[test]

@@ -18,11 +18,16 @@ struct Embedded {
     walks: bool,
 }
 
-const EMBEDDED: [Embedded; 10] = [
+const EMBEDDED: [Embedded; 11] = [
     Embedded {
         name: "ampco",
         text: include_str!("../../presets/ampco.toml"),
         walks: true,
+    },
+    Embedded {
+        name: "agile",
+        text: include_str!("../../presets/agile.toml"),
+        walks: false,
     },
     Embedded {
         name: "ampco-literal",

@@ -5,20 +5,23 @@ use crate::{Learning, LearningError};
 use networks::{AdamState, NormalizerState};
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Changes when the content does.
 const FORMAT: u32 = 2;
 
 #[derive(Serialize, Deserialize)]
-struct Saved {
+struct Saved<'a> {
     format: u32,
     iteration: u64,
     samples: u64,
     rate: f32,
-    policy: Vec<Tensor>,
+    #[serde(borrow)]
+    policy: Vec<Tensor<'a>>,
     policy_adam: AdamState,
-    discriminator: Vec<Tensor>,
+    #[serde(borrow)]
+    discriminator: Vec<Tensor<'a>>,
     discriminator_adam: AdamState,
     observations: NormalizerState,
     features: NormalizerState,
@@ -28,15 +31,18 @@ struct Saved {
 
 /// The discriminator alone: what judges style, and no more.
 #[derive(Serialize, Deserialize)]
-struct SavedJudge {
+struct SavedJudge<'a> {
     format: u32,
-    discriminator: Vec<Tensor>,
+    #[serde(borrow)]
+    discriminator: Vec<Tensor<'a>>,
     features: NormalizerState,
 }
 
 #[derive(Serialize, Deserialize)]
-struct Tensor {
-    name: String,
+struct Tensor<'a> {
+    // Borrowed from the bytes: a name of its own would be allocated as long as damaged bytes say.
+    #[serde(borrow)]
+    name: Cow<'a, str>,
     sizes: Vec<usize>,
     numbers: Vec<f32>,
 }
@@ -73,8 +79,8 @@ impl Learning {
     /// If the bytes are no saved state, or one of networks of other sizes. The learner is then as it was before.
     pub fn load(&mut self, bytes: &[u8]) -> Result<(), LearningError> {
         let refuse = |why: String| LearningError::Decode(why);
-        let (saved, used): (Saved, usize) =
-            bincode::serde::decode_from_slice(bytes, bincode::config::standard())
+        let (saved, used): (Saved<'_>, usize) =
+            bincode::serde::borrow_decode_from_slice(bytes, bincode::config::standard())
                 .map_err(|error| refuse(error.to_string()))?;
         if saved.format != FORMAT {
             return Err(refuse(format!(
@@ -132,8 +138,8 @@ impl Learning {
     /// # Errors
     /// If the bytes are no saved discriminator, or one of other sizes. The learner is then as it was before.
     pub fn load_judge(&mut self, bytes: &[u8]) -> Result<(), LearningError> {
-        let (saved, used): (SavedJudge, usize) =
-            bincode::serde::decode_from_slice(bytes, bincode::config::standard())
+        let (saved, used): (SavedJudge<'_>, usize) =
+            bincode::serde::borrow_decode_from_slice(bytes, bincode::config::standard())
                 .map_err(|error| LearningError::Decode(error.to_string()))?;
         if saved.format != FORMAT || used != bytes.len() {
             return Err(LearningError::Decode(format!(
@@ -152,11 +158,11 @@ impl Learning {
     }
 }
 
-fn tensors(layout: Layout, flat: &[f32]) -> Vec<Tensor> {
+fn tensors(layout: Layout, flat: &[f32]) -> Vec<Tensor<'static>> {
     layout
         .into_iter()
         .map(|(name, sizes, place)| Tensor {
-            name,
+            name: name.into(),
             sizes,
             numbers: flat[place].to_vec(),
         })
@@ -164,7 +170,7 @@ fn tensors(layout: Layout, flat: &[f32]) -> Vec<Tensor> {
 }
 
 /// Writes tensors to their places if they are the ones expected, in order.
-fn restore(layout: Layout, saved: Vec<Tensor>, flat: &mut [f32]) -> Result<(), LearningError> {
+fn restore(layout: Layout, saved: Vec<Tensor<'_>>, flat: &mut [f32]) -> Result<(), LearningError> {
     for i in 0..layout.len().max(saved.len()) {
         let (expected, found) = (layout.get(i), saved.get(i));
         let fits = expected
@@ -176,16 +182,16 @@ fn restore(layout: Layout, saved: Vec<Tensor>, flat: &mut [f32]) -> Result<(), L
             });
         let Some(((name, _, place), tensor)) = fits else {
             let name = expected
-                .map(|(name, ..)| name)
-                .or(found.map(|tensor| &tensor.name));
-            let describe = |there: Option<(&String, &Vec<usize>)>| match there {
+                .map(|(name, ..)| name.as_str())
+                .or(found.map(|tensor| &*tensor.name));
+            let describe = |there: Option<(&str, &Vec<usize>)>| match there {
                 Some((name, sizes)) => format!("{name} {sizes:?}"),
                 None => "absent".to_owned(),
             };
             return Err(LearningError::Tensor {
-                name: name.cloned().unwrap_or_default(),
-                saved: describe(found.map(|tensor| (&tensor.name, &tensor.sizes))),
-                expected: describe(expected.map(|(name, sizes, _)| (name, sizes))),
+                name: name.unwrap_or_default().to_owned(),
+                saved: describe(found.map(|tensor| (&*tensor.name, &tensor.sizes))),
+                expected: describe(expected.map(|(name, sizes, _)| (name.as_str(), sizes))),
             });
         };
         if let Some(index) = networks::first_not_finite(&tensor.numbers) {

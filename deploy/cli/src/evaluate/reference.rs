@@ -12,6 +12,9 @@ const RIGHT_HIP: usize = 6;
 /// Commands this close together (m/s, rad/s) are one: mirror images differ by rounding.
 const SAME: f32 = 0.02;
 
+/// How much farther a clip that goes round may be, m/s, and still be taken instead of one that does not.
+const NEIGHBOUR: f32 = 0.15;
+
 /// The clips of a run.
 pub(super) struct Reference {
     clips: Vec<Clip>,
@@ -34,10 +37,7 @@ impl Reference {
 
     /// Frames of the clips that go nearest to `command`, mirrored ones included.
     pub(super) fn starts(&self, command: [f32; 3]) -> Starts {
-        let nearest = self.distance(command);
-        self.clips
-            .iter()
-            .filter(|clip| gap(clip, command) <= nearest + SAME)
+        self.around(command)
             .flat_map(|clip| {
                 let weight = clip.weight / clip.frames.len() as f32;
                 clip.frames
@@ -49,11 +49,7 @@ impl Reference {
 
     /// The clip that goes nearest to `command`.
     pub(super) fn nearest(&self, command: [f32; 3]) -> Option<Nearest> {
-        let nearest = self.distance(command);
-        let clip = self
-            .clips
-            .iter()
-            .find(|clip| gap(clip, command) <= nearest + SAME)?;
+        let clip = self.around(command).next()?;
         Some(Nearest {
             clip: clip.name.clone(),
             command: clip.command,
@@ -61,9 +57,22 @@ impl Reference {
         })
     }
 
-    fn distance(&self, command: [f32; 3]) -> f32 {
-        let gaps = self.clips.iter().map(|clip| gap(clip, command));
-        gaps.fold(f32::INFINITY, f32::min)
+    /// The clips that go as `command` asks, as nearly as there are any.
+    ///
+    /// Those that go round come first: a clip of setting off has its velocity only at its end.
+    fn around(&self, command: [f32; 3]) -> impl Iterator<Item = &Clip> {
+        let least = |clips: &mut dyn Iterator<Item = &Clip>| {
+            clips
+                .map(|clip| gap(clip, command))
+                .fold(f32::INFINITY, f32::min)
+        };
+        let of_all = least(&mut self.clips.iter());
+        let going_round = least(&mut self.clips.iter().filter(|clip| clip.cyclic));
+        let steady = going_round <= of_all + NEIGHBOUR;
+        let nearest = if steady { going_round } else { of_all };
+        self.clips
+            .iter()
+            .filter(move |clip| gap(clip, command) <= nearest + SAME && (clip.cyclic || !steady))
     }
 }
 
@@ -105,6 +114,19 @@ mod tests {
         }
         let nearest = reference.nearest([1.0, 0.0, 0.0]).unwrap();
         assert!((nearest.command[0] - 0.98).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_walk_comes_before_a_start_to_the_same_speed() {
+        let config: MotionConfig = toml::from_str(
+            "clips = [{ gait = \"walk\", speed = 0.6 }, { gait = \"start\", speed = 0.5 }, \
+             { gait = \"start\", speed = 1.2 }]",
+        )
+        .unwrap();
+        let reference = Reference::of(&Dataset::load(&config, Path::new(".")).unwrap());
+        let speed = |command: f32| reference.nearest([command, 0.0, 0.0]).unwrap().command[0];
+        assert!((speed(0.5) - 0.6).abs() < 1e-3);
+        assert!((speed(1.2) - 1.2).abs() < 1e-3); // no walk is anywhere near
     }
 
     #[test]
