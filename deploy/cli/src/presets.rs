@@ -18,16 +18,11 @@ struct Embedded {
     walks: bool,
 }
 
-const EMBEDDED: [Embedded; 11] = [
+const EMBEDDED: [Embedded; 10] = [
     Embedded {
         name: "ampco",
         text: include_str!("../../presets/ampco.toml"),
         walks: true,
-    },
-    Embedded {
-        name: "agile",
-        text: include_str!("../../presets/agile.toml"),
-        walks: false,
     },
     Embedded {
         name: "ampco-literal",

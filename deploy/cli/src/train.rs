@@ -20,7 +20,7 @@ use crate::supervise::{self, Launch};
 /// anything starts. A live line shows how it goes; metrics and logs are in the run's folder.
 #[derive(Debug, Args)]
 pub(crate) struct Train {
-    /// Preset: ampco, agile (every direction and speed), a method it is compared with, smoke, or a TOML file [default: ampco]
+    /// Preset: ampco, one of the methods it is compared with, smoke, or a TOML file [default: ampco]
     #[arg(long, value_name = "NAME|FILE")]
     preset: Option<String>,
     /// Name of the run, a new one unless --resume [default: the preset's, numbered]
