@@ -66,6 +66,16 @@ pub(crate) fn range(field: &'static str, value: [f32; 2]) -> Result<(), Invalid>
     )
 }
 
+/// Two numbers of samples between which something changes, in order.
+pub(crate) fn way(field: &'static str, [from, to]: [f64; 2]) -> Result<(), Invalid> {
+    require(
+        from >= 0.0 && from <= to && to.is_finite(),
+        field,
+        (from, to),
+        "give numbers of samples from 0 on, to_samples no less than from_samples",
+    )
+}
+
 /// How far the way between two numbers of samples is gone, 0 to 1.
 pub(crate) fn progress([from, to]: [f64; 2], samples: f64) -> f32 {
     if samples <= from {

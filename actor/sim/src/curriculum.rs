@@ -45,14 +45,9 @@ pub struct CurriculumConfig {
 impl CurriculumConfig {
     /// Checks every field; names the first bad one, its value and a remedy.
     pub fn validate(&self) -> Result<(), Invalid> {
-        let sound = self.from_samples >= 0.0
-            && self.from_samples <= self.to_samples
-            && self.to_samples.is_finite();
-        config::require(
-            sound,
+        config::way(
             "curriculum.from_samples",
-            (self.from_samples, self.to_samples),
-            "give numbers of samples from 0 on, to_samples no less than from_samples",
+            [self.from_samples, self.to_samples],
         )?;
         if let Some(kernel) = self.kernel {
             config::at_least("curriculum.kernel", kernel, 0.0)?;

@@ -108,14 +108,7 @@ impl RandomizationConfig {
 
     /// Checks every field; names the first bad one, its value and a remedy.
     pub fn validate(&self) -> Result<(), Invalid> {
-        config::require(
-            self.from_samples >= 0.0
-                && self.from_samples <= self.to_samples
-                && self.to_samples.is_finite(),
-            "from_samples",
-            (self.from_samples, self.to_samples),
-            "give numbers of samples from 0 on, to_samples no less than from_samples",
-        )?;
+        config::way("from_samples", [self.from_samples, self.to_samples])?;
         range("mass_range", self.mass_range)?;
         // The torso weighs 7.8 kg and has to keep a positive mass.
         config::at_least("mass_range[0]", self.mass_range[0], -7.0)?;

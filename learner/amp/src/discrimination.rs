@@ -10,8 +10,8 @@ use crate::inference::{self, CHUNK};
 use crate::losses;
 use crate::robot::FeatureKind;
 use networks::{
-    Activation, Adam, AdamConfig, Decay, Mlp, Normalizer, Scaling, Shape, first_not_finite,
-    orthogonal, shards, tensor, tracked_device, values,
+    Activation, Adam, AdamConfig, Decay, Mlp, Normalizer, Scaling, Shape, orthogonal, shards,
+    tensor, tracked_device, values,
 };
 use rand::Rng;
 use std::ops::Range;
@@ -196,20 +196,11 @@ impl Discriminator {
             self.check_weights()?;
             return Err(Fault::new("discriminator loss", total.loss));
         }
-        match first_not_finite(&total.gradient) {
-            Some(index) => Err(Fault::new(
-                format!("gradient of {}", self.name(index)),
-                total.gradient[index],
-            )),
-            None => Ok(()),
-        }
+        Fault::unless_finite(&total.gradient, |i| format!("gradient of {}", self.name(i)))
     }
 
     fn check_weights(&self) -> Result<(), Fault> {
-        match first_not_finite(&self.weights) {
-            Some(index) => Err(Fault::new(self.name(index), self.weights[index])),
-            None => Ok(()),
-        }
+        Fault::unless_finite(&self.weights, |i| self.name(i))
     }
 
     /// Gradient and figures of a part of a step's rows.

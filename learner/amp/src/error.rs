@@ -85,4 +85,15 @@ impl Fault {
             value: value.into(),
         }
     }
+
+    /// Fails at the first NaN or infinity of `numbers`, by the name that `name` gives to its place.
+    pub(crate) fn unless_finite(
+        numbers: &[f32],
+        name: impl FnOnce(usize) -> String,
+    ) -> Result<(), Self> {
+        match networks::first_not_finite(numbers) {
+            Some(index) => Err(Self::new(name(index), numbers[index])),
+            None => Ok(()),
+        }
+    }
 }

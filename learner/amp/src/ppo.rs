@@ -15,8 +15,8 @@ use crate::robot::{JointGroup, Mirror};
 use crate::{ACTION, OBSERVATION, exploration, surrogate};
 use burn::tensor::Tensor;
 use networks::{
-    Activation, Adam, AdamConfig, Shape, clip_norm, first_not_finite, orthogonal, shards, tensor,
-    tracked_device, values,
+    Activation, Adam, AdamConfig, Shape, clip_norm, orthogonal, shards, tensor, tracked_device,
+    values,
 };
 use part::Minibatch;
 use rand::Rng;
@@ -272,20 +272,12 @@ impl Ppo {
             }
         }
         let norm = clip_norm(&mut total.gradient, self.config.gradient_norm);
-        match first_not_finite(&total.gradient) {
-            Some(index) => Err(Fault::new(
-                format!("gradient of {}", self.name(index)),
-                total.gradient[index],
-            )),
-            None => Ok(norm),
-        }
+        Fault::unless_finite(&total.gradient, |i| format!("gradient of {}", self.name(i)))?;
+        Ok(norm)
     }
 
     fn check_weights(&self) -> Result<(), Fault> {
-        match first_not_finite(&self.weights) {
-            Some(index) => Err(Fault::new(self.name(index), self.weights[index])),
-            None => Ok(()),
-        }
+        Fault::unless_finite(&self.weights, |i| self.name(i))
     }
 
     /// ln σ `[1, 23]`: a differentiable weight if it is learned, else that of the given σ.

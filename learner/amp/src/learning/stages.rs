@@ -63,12 +63,7 @@ impl Learning {
         }
         scores.clear();
         self.core.discriminator.scores(windows, scores);
-        if let Some(i) = networks::first_not_finite(scores) {
-            return Err(Fault::new(
-                format!("discriminator score of row {i}"),
-                scores[i],
-            ));
-        }
+        Fault::unless_finite(scores, |row| format!("discriminator score of row {row}"))?;
         style_rewards.clear();
         style_rewards.extend(scores.iter().map(|score| style_reward(*score)));
         Ok(())
@@ -144,10 +139,7 @@ impl Learning {
         }
         returns.clear();
         returns.extend(advantages.iter().zip(&*values).map(|(a, v)| a + v));
-        match networks::first_not_finite(returns) {
-            None => Ok(()),
-            Some(i) => Err(Fault::new(format!("return of row {i}"), returns[i])),
-        }
+        Fault::unless_finite(returns, |row| format!("return of row {row}"))
     }
 
     /// 1 − Var(R − V)/Var(R); 0 if the returns do not vary.
@@ -208,12 +200,7 @@ impl Learning {
         let width = core.discriminator.width();
         expert.resize(count * width, 0.0);
         experts(expert);
-        if let Some(i) = networks::first_not_finite(expert) {
-            return Err(Fault::new(
-                format!("expert window {}", i / width),
-                expert[i],
-            ));
-        }
+        Fault::unless_finite(expert, |i| format!("expert window {}", i / width))?;
         if config.frames > 2 {
             for window in expert.chunks_exact_mut(width) {
                 let row = core.generator.random_range(0..batch.rows());
