@@ -12,6 +12,7 @@ mod gait;
 mod guidance;
 mod intake;
 mod lines;
+pub mod pages;
 pub mod process;
 mod record;
 mod robot;

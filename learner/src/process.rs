@@ -24,6 +24,7 @@ const MOST_REFUSALS: u64 = 5;
 /// Learns for the run in `run_dir` until its iterations are done or it is told to stop.
 pub fn run(run_dir: &Path, resume: bool) -> Result<()> {
     protocol::end_with_supervisor()?;
+    crate::pages::keep_small();
     let folder = Folder::open(run_dir)?;
     run::log::init(&folder.logs(), "learner")?;
     let held = folder.lock("learner")?;

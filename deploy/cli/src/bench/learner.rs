@@ -50,6 +50,8 @@ impl LearnerBench {
             self.repetitions > 0 && self.iterations > 0,
             "--repetitions 0 or --iterations 0: nothing to time; use 1 or more"
         );
+        // As in the learner's own process.
+        learner::pages::keep_small();
         let sized = |hidden: &[usize], judge: &[usize]| {
             let mut config = LearningConfig::default();
             config.policy.hidden = hidden.to_vec();
