@@ -21,9 +21,9 @@ fn chromium() -> Option<PathBuf> {
     found
 }
 
-/// Two seconds of walking on the spot: the knees bend in turn.
+/// Twenty seconds of walking on the spot: the knees bend in turn.
 fn recording() -> Recording {
-    let frames = (0..100).map(|i| {
+    let frames = (0..1000).map(|i| {
         let mut state = RobotState::standing();
         let swing = (i as f32 * 0.2).sin().max(0.0);
         state.joint_positions[3] += swing;
@@ -131,13 +131,14 @@ fn time_runs_by_itself_and_stands_where_the_address_says() {
     let still = browse(&browser, folder.path(), "#t=0.5", 1_000, "--dump-dom");
     assert_eq!(frame(&still), 25); // 0.5 s of 20 ms
     assert!(still.contains("data-playing=\"false\""));
-    let moving = browse(&browser, folder.path(), "", 1_500, "--dump-dom");
+    // A busy machine draws few frames within a budget, and the first of them only starts the clock.
+    let budgets = [1_500, 4_000, 10_000];
+    let moving = budgets
+        .iter()
+        .map(|budget| browse(&browser, folder.path(), "", *budget, "--dump-dom"))
+        .find(|document| frame(document) > 0)
+        .expect("time runs within ten seconds");
     assert!(moving.contains("data-playing=\"true\""));
-    assert!(
-        frame(&moving) > 0,
-        "frame {} after a second",
-        frame(&moving)
-    );
     assert!(
         moving.contains("id=\"trouble\" hidden"),
         "no WebGL in this browser"

@@ -62,7 +62,7 @@ let before = null;
 function tick(now) {
   if (player.playing && before !== null) {
     player.time += (now - before) / 1000 * player.speed;
-    if (player.time > duration) player.time = 0;
+    if (player.time > duration) player.time %= duration;
     show();
   }
   before = now;
