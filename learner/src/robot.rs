@@ -5,12 +5,14 @@
 use amp::{FeatureKind, JointGroup, Mirror, Robot};
 use g1::joints::WAIST;
 use g1::mirror::{self, ACTION_MIRROR, OBSERVATION_MIRROR};
+use g1::observation::COMMAND;
 use g1::{FEATURES, JOINTS};
 
 /// The tables that learning asks for.
 pub fn robot() -> Robot {
     Robot {
         observation_mirror: mirror_of(&OBSERVATION_MIRROR),
+        command: COMMAND,
         action_mirror: mirror_of(&ACTION_MIRROR),
         features: (0..FEATURES).map(kind).collect(),
         joints: (0..JOINTS).map(group).collect(),

@@ -1,12 +1,13 @@
 //! What the learner knows: how it begins, grows by an iteration, and is written to a checkpoint.
 
+use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Instant;
 
 use amp::{Batch, IterationReport, Learning, LearningError};
 use anyhow::{Context, Result};
 use protocol::RewardReport;
-use rand::SeedableRng;
+use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use run::checkpoint::robots_of;
 use run::{Checkpoint, CheckpointError, Contents, Folder, Mode};
@@ -117,8 +118,23 @@ impl State {
                 );
             }
         }
+        if state.iteration == 0 && !config.run.from.is_empty() {
+            let from = Path::new(&config.run.from);
+            state.begin_with(&Checkpoint::open(from)?)?;
+            info!(from = %from.display(), "begun with the policy of another run");
+        }
         run::metrics::truncate_after(&folder.metrics_path(), state.iteration)?;
         Ok(state)
+    }
+
+    /// Takes another run's policy over, and nothing else.
+    fn begin_with(&mut self, checkpoint: &Checkpoint) -> Result<()> {
+        let part = checkpoint.part(LEARNING).with_context(|| {
+            format!("run.from: the checkpoint has no `{LEARNING}`; name one of a run, not a shipped policy")
+        })?;
+        self.learning.load_policy(part).with_context(|| {
+            format!("run.from: reading its `{LEARNING}`; set policy.hidden as it was")
+        })
     }
 
     fn take_up(&mut self, checkpoint: &Checkpoint) -> Result<()> {
@@ -153,10 +169,14 @@ impl State {
         self.iteration += 1;
         self.samples += batch.rows() as u64;
         let generator = &mut self.generator;
-        let width = config.learning.discriminator.frames * amp::FEATURES;
+        let judge = &config.learning.discriminator;
         let mut experts = |rows: &mut [f32]| {
-            for row in rows.chunks_exact_mut(width) {
-                config.experts.sample_window(generator, row);
+            for row in rows.chunks_exact_mut(judge.width()) {
+                let (states, seen) = row.split_at_mut(judge.frames * amp::FEATURES);
+                let command = config.experts.sample_window(generator, states);
+                for (i, blur) in judge.command_blur.iter().flatten().enumerate() {
+                    seen[i] = command[i] + generator.random_range(-blur..=*blur);
+                }
             }
         };
         let report = self

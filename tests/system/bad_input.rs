@@ -52,6 +52,11 @@ fn an_unknown_key_of_a_preset_file_names_the_file() {
 }
 
 #[test]
+fn a_policy_to_begin_with_has_to_be_there() {
+    assert_says(&refused(&["--from", "nobody"]), &["nobody"]);
+}
+
+#[test]
 fn values_out_of_range_name_field_and_value() {
     assert_says(&refused(&["--set", "ppo.gamma=1.5"]), &["gamma", "1.5"]);
     assert_says(&refused(&["--set", "fleet.steps=0"]), &["steps", "0"]);

@@ -27,6 +27,33 @@ fn two_runs_of_one_seed_write_the_same_metrics_and_weights() {
 }
 
 #[test]
+fn a_run_begins_with_the_policy_of_another_and_nothing_else() {
+    let runs = Runs::new();
+    let train = |name: &str, arguments: &[&str]| {
+        let mut group = runs.train(name, &[&["--actors", "1"], arguments].concat());
+        assert!(group.end().success(), "{}", group.stderr.text());
+    };
+    train("first", &["--iterations", "2"]);
+    let once = ["--iterations", "1", "--set", "seed=9"];
+    train("from", &[&once[..], &["--from", "first"]].concat());
+    train("anew", &once);
+    let policy = |name: &str, at: u64| -> Vec<f32> {
+        let path = format!("checkpoints/{at:08}/policy.bin");
+        let bytes = bytes(&runs.run(name).join(path));
+        let numbers = bytes.as_chunks::<4>().0.iter();
+        numbers.map(|number| f32::from_le_bytes(*number)).collect()
+    };
+    let first = policy("first", 2);
+    let far = |name: &str| {
+        let pairs = policy(name, 1).into_iter().zip(first.iter().copied());
+        pairs.map(|(a, b)| (a - b).powi(2)).sum::<f32>().sqrt()
+    };
+    let (from, anew) = (far("from"), far("anew"));
+    assert!(from < 0.2 * anew, "{from} {anew}");
+    assert_eq!(metrics(&runs.run("from"))[0]["iteration"], 1);
+}
+
+#[test]
 fn another_seed_is_another_run() {
     let runs = Runs::new();
     for (name, seed) in [("one", "seed=7"), ("two", "seed=8")] {

@@ -8,6 +8,7 @@ use motion::Dataset;
 use protocol::RolloutLayout;
 use run::{Config, Folder};
 
+use crate::evaluate::subject::Kept;
 use crate::failure::usage;
 use crate::place::Place;
 use crate::presets;
@@ -40,6 +41,9 @@ pub(crate) struct Train {
     /// Set one value of the configuration, as in ppo.epochs=4 or seed=7; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
+    /// Begin with the policy of another run, or of a checkpoint's folder: its networks and statistics, nothing else
+    #[arg(long, value_name = "RUN|FOLDER", conflicts_with = "resume")]
+    from: Option<String>,
     /// Go on from the last checkpoint of --run, or of the newest run; without one, from its start
     #[arg(long)]
     resume: bool,
@@ -85,6 +89,13 @@ impl Train {
         let preset = presets::find(self.preset.as_deref().unwrap_or("ampco"))?;
         let mut config = preset.config;
         self.apply(&mut config)?;
+        if let Some(from) = &self.from {
+            let kept = Kept::open(&self.place, from)?;
+            let path =
+                std::path::absolute(&kept.path).context("finding the policy to begin with")?;
+            let path = path.to_str().context("the path of --from is not text")?;
+            config.put("run.from", path, &format!("--from {from}"));
+        }
         let file = self
             .preset
             .as_deref()

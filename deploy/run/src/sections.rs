@@ -36,6 +36,10 @@ pub struct RunConfig {
     pub checkpoint_every: u64,
     /// How many of the newest checkpoints stay on the disk, the best beside them.
     pub keep_checkpoints: usize,
+    /// Folder of a checkpoint whose policy, critic and statistics of observations the run begins with
+    /// (`ampco train --from`); empty: it begins with none.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub from: String,
     /// Whether learner and actors write down what became of every single rollout, in
     /// `logs/*.rollouts`: some 100 bytes each. `ampco soak` asks for it.
     pub journal: bool,
@@ -80,6 +84,7 @@ impl Default for RunConfig {
             minutes: 0.0,
             checkpoint_every: 50,
             keep_checkpoints: 5,
+            from: String::new(),
             journal: false,
             deadlines: Deadlines::default(),
         }

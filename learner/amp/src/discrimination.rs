@@ -3,18 +3,22 @@
 //! It sees normalised transitions; the gradient penalty is taken where it looks, that is with respect to normalised
 //! expert windows.
 
-use crate::FEATURES;
 use crate::config::DiscriminatorConfig;
 use crate::error::Fault;
 use crate::inference::{self, CHUNK};
 use crate::losses;
 use crate::robot::FeatureKind;
+use crate::{COMMAND, FEATURES};
 use networks::{
-    Activation, Adam, AdamConfig, Decay, Mlp, Normalizer, Scaling, Shape, orthogonal, shards,
-    tensor, tracked_device, values,
+    Activation, Adam, AdamConfig, Decay, Mlp, Normalizer, Shape, orthogonal, shards, tensor,
+    tracked_device, values,
 };
 use rand::Rng;
 use std::ops::Range;
+
+mod view;
+
+pub use view::View;
 
 /// Figures of one update, means over its steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,6 +42,8 @@ pub struct Discriminator {
     weights: Vec<f32>,
     adam: Adam,
     normalizer: Normalizer,
+    /// Which features a command is about.
+    velocities: [usize; COMMAND],
 }
 
 /// Sums over the rows of one step, or of a shard of it.
@@ -58,12 +64,7 @@ impl Discriminator {
         threads: usize,
         rng: &mut (impl Rng + ?Sized),
     ) -> Self {
-        let shape = Shape::new(
-            config.frames * FEATURES,
-            &config.hidden,
-            1,
-            Activation::Relu,
-        );
+        let shape = Shape::new(config.width(), &config.hidden, 1, Activation::Relu);
         let weights = orthogonal(&shape, std::f32::consts::SQRT_2, 1.0, rng);
         let decay = vec![
             Decay {
@@ -92,10 +93,11 @@ impl Discriminator {
             threads,
             shape,
             weights,
+            velocities: view::velocities(features),
         }
     }
 
-    /// Numbers of a window: `[frames][53]`.
+    /// Numbers of a window: `[frames][53]`, then the command if it sees that.
     pub fn width(&self) -> usize {
         self.shape.inputs
     }
@@ -111,27 +113,24 @@ impl Discriminator {
         );
     }
 
-    /// The mapping of windows: that of features, for every state.
-    pub fn scaling(&self) -> Scaling {
-        let Scaling {
-            mut mean,
-            mut inverse,
-            clip,
-        } = self.normalizer.scaling();
-        for _ in 1..self.config.frames {
-            mean.extend_from_within(..FEATURES);
-            inverse.extend_from_within(..FEATURES);
-        }
-        Scaling {
-            mean,
-            inverse,
-            clip,
-        }
+    /// The mapping of windows as of now: that of features, for every state.
+    pub fn view(&self) -> View {
+        View::new(&self.config, self.velocities, self.normalizer.scaling())
     }
 
     /// Takes windows `[row][width]`, not normalised, into the statistics: every state of each.
     pub fn observe(&mut self, transitions: &[f32]) {
-        self.normalizer.update(transitions);
+        let states = self.config.frames * FEATURES;
+        if states == self.width() {
+            self.normalizer.update(transitions);
+            return;
+        }
+        let windows = transitions.chunks_exact(self.width());
+        let alone: Vec<f32> = windows
+            .flat_map(|window| &window[..states])
+            .copied()
+            .collect();
+        self.normalizer.update(&alone);
     }
 
     /// Trains on as many steps as `experts` and `policy` have batches; both normalised, `[row][width]`.

@@ -11,7 +11,7 @@ use crate::replay::Replay;
 use crate::report::{IterationReport, Seconds, moments};
 use crate::robot::Robot;
 use crate::style::style_reward;
-use crate::{FEATURES, LearningError, OBSERVATION, blend, exploration};
+use crate::{LearningError, OBSERVATION, blend, exploration};
 use ampco::{Granularity, Rule};
 use networks::{Normalizer, snapshot};
 use rand::SeedableRng;
@@ -77,7 +77,7 @@ impl Learning {
             },
             replay: Replay::new(
                 config.discriminator.replay_capacity,
-                config.discriminator.frames * FEATURES,
+                config.discriminator.width(),
             ),
             clock: || 0.0,
             config,
@@ -122,20 +122,22 @@ impl Learning {
         &self.flat
     }
 
-    /// rˢ (Eq. 7) of windows `[row][frames][53]` as of now; appended to `rewards`.
+    /// rˢ (Eq. 7) of windows as of now, `[row][frames][53]` and the command if the discriminator sees that; appended to
+    /// `rewards`.
     pub fn style_rewards(&mut self, windows: &[f32], rewards: &mut Vec<f32>) {
         let Scratch { scaled, scores, .. } = &mut self.scratch;
         scaled.clear();
         scores.clear();
-        self.core.discriminator.scaling().apply(windows, scaled);
+        self.core.discriminator.view().apply(windows, scaled);
         self.core.discriminator.scores(scaled, scores);
         rewards.extend(scores.iter().map(|score| style_reward(*score)));
     }
 
     /// One iteration: score, blend, estimate advantages, improve the policy, train the discriminator.
     ///
-    /// `experts` fills its slice with windows of reference motion, `[n][frames][53]`; it is called once. Statistics of observations stay
-    /// as the actors had them and take the batch in at the end, for the next policy.
+    /// `experts` fills its slice with windows of reference motion, `[n][frames][53]`, each with its command if the
+    /// discriminator sees that; it is called once. Statistics of observations stay as the actors had them and take the
+    /// batch in at the end, for the next policy.
     ///
     /// # Errors
     /// If the batch cannot be learnt from, or something became NaN or infinite. The learner is then as it was before.

@@ -60,3 +60,5 @@ pub const OBSERVATION: usize = 82;
 pub const ACTION: usize = 23;
 /// Numbers that the discriminator sees of one state (III-A).
 pub const FEATURES: usize = 53;
+/// Numbers of a command: m/s forward, m/s aside, rad/s (III-A).
+pub const COMMAND: usize = 3;

@@ -2,7 +2,8 @@
 //!
 //! The robot's own crate is not imported: learning needs a reflection and two groupings, whatever walks.
 
-use crate::{ACTION, FEATURES, LearningError, OBSERVATION};
+use crate::{ACTION, COMMAND, FEATURES, LearningError, OBSERVATION};
+use std::ops::Range;
 
 /// A reflection as a permutation with signs: `out[i] = sign[i] · in[index[i]]`.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +45,8 @@ pub enum JointGroup {
 pub struct Robot {
     /// Left–right reflection of a policy observation.
     pub observation_mirror: Mirror,
+    /// Where an observation holds the command.
+    pub command: Range<usize>,
     /// Left–right reflection of an action.
     pub action_mirror: Mirror,
     /// Kind of each of the features.
@@ -81,6 +84,9 @@ impl Robot {
         if !self.action_mirror.is_reflection(ACTION) {
             return refuse("the mirror of actions is not a reflection of 23 numbers");
         }
+        if self.command.len() != COMMAND || self.command.end > OBSERVATION {
+            return refuse("the command must be 3 numbers of an observation");
+        }
         if self.features.len() != FEATURES {
             return refuse("there must be a kind for each of 53 features");
         }
@@ -109,6 +115,7 @@ pub(crate) mod tests {
         };
         Robot {
             observation_mirror: swap(OBSERVATION, 1.0),
+            command: 10..13,
             action_mirror: swap(ACTION, -1.0),
             features: vec![FeatureKind::JointPosition; FEATURES],
             joints: (0..ACTION)
@@ -141,6 +148,9 @@ pub(crate) mod tests {
         assert!(robot.check().is_err());
         let mut robot = simple();
         robot.action_mirror.sign[0] = 1.0; // its partner has −1
+        assert!(robot.check().is_err());
+        let mut robot = simple();
+        robot.command = 80..83;
         assert!(robot.check().is_err());
         let mut robot = simple();
         robot.features.pop();

@@ -1,5 +1,6 @@
 //! The learner as bytes: everything that an exact continuation needs, and checks when it comes back.
 
+use crate::learning::Core;
 use crate::replay::Replay;
 use crate::{Learning, LearningError};
 use networks::{AdamState, NormalizerState};
@@ -79,32 +80,14 @@ impl Learning {
     /// If the bytes are no saved state, or one of networks of other sizes. The learner is then as it was before.
     pub fn load(&mut self, bytes: &[u8]) -> Result<(), LearningError> {
         let refuse = |why: String| LearningError::Decode(why);
-        let (saved, used): (Saved<'_>, usize) =
-            bincode::serde::borrow_decode_from_slice(bytes, bincode::config::standard())
-                .map_err(|error| refuse(error.to_string()))?;
-        if saved.format != FORMAT {
-            return Err(refuse(format!(
-                "format {}, this program reads {FORMAT}",
-                saved.format
-            )));
-        }
-        if used != bytes.len() {
-            return Err(refuse(format!("{} bytes too many", bytes.len() - used)));
-        }
+        let saved = Saved::read(bytes)?;
         if !saved.replay.is_sound(self.replay.width()) {
             return Err(refuse(
                 "the remembered transitions contradict themselves".to_owned(),
             ));
         }
-        if !(saved.rate.is_finite() && saved.rate > 0.0) {
-            return Err(refuse(format!("learning rate {}", saved.rate)));
-        }
         let mut core = self.core.clone();
-        let layout = core.ppo.tensors();
-        let (weights, adam, rate) = core.ppo.state_mut();
-        restore(layout, saved.policy, weights)?;
-        adam.restore(saved.policy_adam)?;
-        *rate = saved.rate;
+        core.take_policy(saved.policy, saved.policy_adam, saved.rate)?;
         let layout = core.discriminator.tensors();
         let (weights, adam, features) = core.discriminator.state_mut();
         restore(layout, saved.discriminator, weights)?;
@@ -120,7 +103,61 @@ impl Learning {
     }
 }
 
+impl Saved<'_> {
+    /// Bytes of this format, to the last.
+    fn read(bytes: &[u8]) -> Result<Saved<'_>, LearningError> {
+        let refuse = |why: String| LearningError::Decode(why);
+        let (saved, used): (Saved<'_>, usize) =
+            bincode::serde::borrow_decode_from_slice(bytes, bincode::config::standard())
+                .map_err(|error| refuse(error.to_string()))?;
+        if saved.format != FORMAT {
+            return Err(refuse(format!(
+                "format {}, this program reads {FORMAT}",
+                saved.format
+            )));
+        }
+        if used != bytes.len() {
+            return Err(refuse(format!("{} bytes too many", bytes.len() - used)));
+        }
+        Ok(saved)
+    }
+}
+
+impl Core {
+    /// Actor, critic and widths with their optimizer and its rate.
+    fn take_policy(
+        &mut self,
+        policy: Vec<Tensor<'_>>,
+        moments: AdamState,
+        saved_rate: f32,
+    ) -> Result<(), LearningError> {
+        if !(saved_rate.is_finite() && saved_rate > 0.0) {
+            return Err(LearningError::Decode(format!("learning rate {saved_rate}")));
+        }
+        let layout = self.ppo.tensors();
+        let (weights, adam, rate) = self.ppo.state_mut();
+        restore(layout, policy, weights)?;
+        adam.restore(moments)?;
+        *rate = saved_rate;
+        Ok(())
+    }
+}
+
 impl Learning {
+    /// Begins with the policy of another learner: actor, critic, their optimizer and the statistics of observations.
+    /// Discriminator, memory and the count of samples stay as they are.
+    ///
+    /// # Errors
+    /// As of [`Learning::load`]. The learner is then as it was before.
+    pub fn load_policy(&mut self, bytes: &[u8]) -> Result<(), LearningError> {
+        let saved = Saved::read(bytes)?;
+        let mut core = self.core.clone();
+        core.take_policy(saved.policy, saved.policy_adam, saved.rate)?;
+        core.observations.restore(saved.observations)?;
+        self.core = core;
+        Ok(())
+    }
+
     /// The discriminator alone, a hundredth of [`Learning::save`]: enough to judge style, not to go on training.
     pub fn save_judge(&self) -> Vec<u8> {
         let (weights, _, features) = self.core.discriminator.state();

@@ -5,8 +5,35 @@
 //! past: the oldest state stands for those before it. Experts are then cut as short as rows of the batch are, or the
 //! cut itself would tell the two apart.
 
-use crate::FEATURES;
 use crate::batch::Batch;
+use crate::config::DiscriminatorConfig;
+use crate::robot::Robot;
+use crate::{FEATURES, OBSERVATION};
+use std::ops::Range;
+
+/// What windows are cut to.
+#[derive(Clone, Debug)]
+pub(crate) struct Cut {
+    /// Successive states.
+    pub(crate) frames: usize,
+    /// Where an observation holds the command, if that is seen too.
+    command: Option<Range<usize>>,
+}
+
+impl Cut {
+    /// As a discriminator is configured to look.
+    pub(crate) fn new(config: &DiscriminatorConfig, robot: &Robot) -> Self {
+        Self {
+            frames: config.frames,
+            command: config.command_blur.map(|_| robot.command.clone()),
+        }
+    }
+
+    /// Numbers of the states alone.
+    pub(crate) fn states(&self) -> usize {
+        self.frames * FEATURES
+    }
+}
 
 /// No row before.
 const NONE: u32 = u32::MAX;
@@ -45,11 +72,17 @@ impl Past {
         frames
     }
 
-    /// Appends a row's window `[frames][53]`, oldest state first.
-    pub(crate) fn write(&self, batch: &Batch, row: usize, frames: usize, out: &mut Vec<f32>) {
-        let start = out.len();
-        out.resize(start + frames * FEATURES, 0.0);
-        let window = &mut out[start..];
+    /// Appends a row's window: `[frames][53]`, oldest state first, then the command if that is seen.
+    pub(crate) fn write(&self, batch: &Batch, row: usize, cut: &Cut, out: &mut Vec<f32>) {
+        let (start, frames) = (out.len(), cut.frames);
+        out.resize(start + cut.states(), 0.0);
+        self.write_states(batch, row, frames, &mut out[start..]);
+        if let Some(command) = cut.command.clone() {
+            out.extend_from_slice(&batch.observations[row * OBSERVATION..][command]);
+        }
+    }
+
+    fn write_states(&self, batch: &Batch, row: usize, frames: usize, window: &mut [f32]) {
         window[(frames - 1) * FEATURES..]
             .copy_from_slice(&batch.next_features[row * FEATURES..][..FEATURES]);
         let mut row = row;
@@ -88,6 +121,8 @@ mod tests {
             let number = (10 * robot + step) as f32;
             batch.features[row * FEATURES..][..FEATURES].fill(number);
             batch.next_features[row * FEATURES..][..FEATURES].fill(number + 1.0);
+            let seen = &mut batch.observations[row * OBSERVATION..][..OBSERVATION];
+            seen[10..13].copy_from_slice(&[row as f32, 0.5, 0.0]);
             batch.episode_steps[row] = if robot == 1 && step >= 2 {
                 step - 1
             } else {
@@ -101,8 +136,13 @@ mod tests {
         let batch = batch();
         let (mut past, mut out) = (Past::default(), vec![]);
         past.of(&batch);
-        past.write(&batch, row, frames, &mut out);
+        let cut = |command| Cut { frames, command };
+        past.write(&batch, row, &cut(None), &mut out);
         assert_eq!(out.len(), frames * FEATURES);
+        let mut with_command = vec![];
+        past.write(&batch, row, &cut(Some(10..13)), &mut with_command);
+        assert_eq!(with_command[..out.len()], out);
+        assert_eq!(with_command[out.len()..], [row as f32, 0.5, 0.0]);
         out.chunks(FEATURES).map(|state| state[7]).collect()
     }
 

@@ -14,6 +14,9 @@ use rand::{Rng, RngExt};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+/// Which features are velocity forward and aside, m/s, and yaw rate, rad/s.
+const VELOCITY: [usize; 3] = [1, 2, 6];
+
 /// Clips with what is needed to draw from them.
 ///
 /// A clip is drawn in proportion to its weight, whatever its length; then any of its frames alike.
@@ -125,9 +128,12 @@ impl Dataset {
     /// transition is equally often its end. In a cyclic clip the first frame follows the last; before
     /// the first frame of another clip there is nothing but that frame. Allocates nothing.
     ///
+    /// Gives the command that such motion obeys: in a cyclic clip the clip's own; in another, which sets off, stops or
+    /// wanders, the window's mean velocity.
+    ///
     /// # Panics
     /// If `out` is not as long as two steps or more.
-    pub fn sample_window(&self, rng: &mut impl Rng, out: &mut [f32]) {
+    pub fn sample_window(&self, rng: &mut impl Rng, out: &mut [f32]) -> [f32; 3] {
         let steps = out.len() / FEATURES;
         assert!(
             steps >= 2 && out.len().is_multiple_of(FEATURES),
@@ -154,6 +160,13 @@ impl Dataset {
             let at = (self.starts[index] + frame as usize) * FEATURES;
             state.copy_from_slice(&self.features[at..at + FEATURES]);
         }
+        if clip.cyclic {
+            return clip.command;
+        }
+        VELOCITY.map(|feature| {
+            let sum: f32 = out.iter().skip(feature).step_by(FEATURES).sum();
+            sum / steps as f32
+        })
     }
 
     /// Draws a frame with its clip's command, to start an episode from.

@@ -104,7 +104,7 @@ impl<'a> Walker<'a> {
             fleet.step(&block.actions, &mut block.rows.out());
             for (robot, life) in robots.iter_mut().enumerate().filter(|(_, l)| !l.fallen) {
                 let (before, after) = block.transition(robot);
-                self.judge.take(robot, step == 0, before, after);
+                self.judge.take(robot, step == 0, [before, after], &command);
                 let last = &fleet.last_step(robot);
                 tally.add(&block, robot, command, last, life.forces);
                 if step >= held.1 + SETTLING {

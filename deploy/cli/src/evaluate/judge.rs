@@ -20,6 +20,8 @@ pub(crate) struct Judge {
     learning: Learning,
     /// States that a window has.
     frames: usize,
+    /// Whether a window ends with the command.
+    sees_command: bool,
     /// The last states of each robot but the newest, `[robot][frames − 1][53]`.
     seen: Vec<f32>,
     waiting: Vec<f32>,
@@ -32,6 +34,7 @@ impl Judge {
     pub(crate) fn of(kept: &Kept) -> Result<Self> {
         let mut config = kept.learning.clone();
         let frames = config.discriminator.frames;
+        let sees_command = config.discriminator.command_blur.is_some();
         // Episodes are spread over threads already.
         config.ppo.threads = 1;
         // The seed is of weights that are replaced at once.
@@ -46,6 +49,7 @@ impl Judge {
         Ok(Self {
             learning,
             frames,
+            sees_command,
             seen: Vec::new(),
             waiting: Vec::new(),
             rewards: Vec::new(),
@@ -58,9 +62,15 @@ impl Judge {
         (JUDGE, self.learning.save_judge())
     }
 
-    /// Takes one step of one robot: the features (53) before and after it. Before the first step of an
+    /// Takes one step of one robot: the features (53) before and after it, and the command in force. Before the first step of an
     /// episode nothing is known, so its first state stands for those before, as in training.
-    pub(super) fn take(&mut self, robot: usize, first: bool, before: &[f32], after: &[f32]) {
+    pub(super) fn take(
+        &mut self,
+        robot: usize,
+        first: bool,
+        [before, after]: [&[f32]; 2],
+        command: &[f32; 3],
+    ) {
         let size = (self.frames - 1) * FEATURES;
         if self.seen.len() < (robot + 1) * size {
             self.seen.resize((robot + 1) * size, 0.0);
@@ -76,6 +86,9 @@ impl Judge {
         }
         self.waiting.extend_from_slice(seen);
         self.waiting.extend_from_slice(after);
+        if self.sees_command {
+            self.waiting.extend_from_slice(command);
+        }
         if self.waiting.len() >= TOGETHER * self.frames * FEATURES {
             self.score();
         }

@@ -1,6 +1,7 @@
 //! `[discriminator]`: the judge of style.
 
 use super::{Check, ConfigError};
+use crate::{COMMAND, FEATURES};
 use serde::{Deserialize, Serialize};
 
 /// `[discriminator]`: the judge of style.
@@ -9,6 +10,12 @@ use serde::{Deserialize, Serialize};
 pub struct DiscriminatorConfig {
     /// Successive states that it looks at. The paper's pair; longer windows show rhythm (see [`crate::window`]).
     pub frames: usize,
+    /// Whether it also sees how far the velocity is off the command, and of reference motion off its clip's own. That
+    /// is blurred by so much either way (m/s, m/s, rad/s), so that an error below it is nothing odd. Default: it does
+    /// not, as in the paper. Then any motion of the data is good style whatever was asked for, and of those standing
+    /// is the easiest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub command_blur: Option<[f32; COMMAND]>,
     /// Widths of hidden layers (ReLU). The recipe's; published trainers use 1024-512.
     pub hidden: Vec<usize>,
     /// Steps per iteration. The recipe's.
@@ -56,6 +63,7 @@ impl Default for DiscriminatorConfig {
     fn default() -> Self {
         Self {
             frames: 2,
+            command_blur: None,
             hidden: vec![256, 128],
             steps: 3,
             batch: 1024,
@@ -85,6 +93,11 @@ impl Default for Floors {
 }
 
 impl DiscriminatorConfig {
+    /// Numbers that it sees of a window: `[frames][53]`, then the command if it sees that.
+    pub fn width(&self) -> usize {
+        self.frames * FEATURES + self.command_blur.map_or(0, |blur| blur.len())
+    }
+
     /// Refuses the first value that learning cannot work with.
     pub fn validate(&self) -> Result<(), ConfigError> {
         Check(Ok(()))
@@ -94,6 +107,13 @@ impl DiscriminatorConfig {
                 "frames",
                 self.frames,
                 "use 2, the paper's pair, to 32",
+            )
+            .that(
+                self.command_blur
+                    .is_none_or(|blur| blur.iter().all(|x| x.is_finite() && *x > 0.0)),
+                "command_blur",
+                format!("{:?}", self.command_blur.unwrap_or_default()),
+                "use three numbers above 0: m/s forward, m/s aside, rad/s",
             )
             .count("steps", self.steps, 1000)
             .count("batch", self.batch, 1 << 20)

@@ -102,11 +102,55 @@ fn features_are_scaled_alike_in_both_states() {
     let mut judge = discriminator(&small(), 1);
     let mut rng = Pcg64::seed_from_u64(5);
     judge.observe(&gaussian(100, 2.0, &mut rng));
-    let scaling = judge.scaling();
+    let scaling = judge.view().states;
     assert_eq!(scaling.mean.len(), (2 * FEATURES));
     assert_eq!(scaling.mean[..FEATURES], scaling.mean[FEATURES..]);
     assert_eq!(scaling.inverse[..FEATURES], scaling.inverse[FEATURES..]);
     assert!((scaling.mean[0] - 2.0).abs() < 0.2);
+}
+
+#[test]
+fn motion_that_is_not_what_was_asked_for_is_told_apart() {
+    // Both move alike, noise about 0.4 m/s; only that experts were told to and the policy to stand.
+    let config = DiscriminatorConfig {
+        command_blur: Some([0.2, 0.1, 0.5]),
+        ..small()
+    };
+    let mut features = simple().features;
+    features[1..4].fill(FeatureKind::LinearVelocity);
+    features[4..7].fill(FeatureKind::AngularVelocity);
+    let mut judge = Discriminator::new(&config, &features, 1, &mut Pcg64::seed_from_u64(1));
+    assert_eq!(judge.width(), 2 * FEATURES + COMMAND);
+    let rows = |command: f32, rng: &mut Pcg64| -> Vec<f32> {
+        gaussian(512, 0.4, rng)
+            .chunks_exact(2 * FEATURES)
+            .flat_map(|states| states.iter().copied().chain([command, 0.4, 0.4]))
+            .collect()
+    };
+    let mut rng = Pcg64::seed_from_u64(8);
+    let first = rows(0.4, &mut rng);
+    judge.observe(&first);
+    let seen = |rows: &[f32]| {
+        let mut out = vec![];
+        judge.view().apply(rows, &mut out);
+        out
+    };
+    let mut window = vec![0.0; judge.width()];
+    (window[1], window[FEATURES + 1]) = (0.3, 0.5); // forward, mean 0.4
+    (window[6], window[FEATURES + 6]) = (9.0, 9.0); // turning
+    window[2 * FEATURES..].copy_from_slice(&[1.0, 0.05, 1.0]);
+    // (0.4 − 1)/0.2 = −3, (0 − 0.05)/0.1 = −0.5, (9 − 1)/0.5 = 16 is clipped to 5
+    let off = seen(&window)[2 * FEATURES..].to_vec();
+    for (off, expected) in off.iter().zip([-3.0, -0.5, 5.0]) {
+        assert!((off - expected).abs() < 1e-5, "{off} {expected}");
+    }
+    let (obedient, other) = (rows(0.4, &mut rng), rows(0.0, &mut rng));
+    let (obedient, other) = (seen(&obedient), seen(&other));
+    for _ in 0..60 {
+        judge.update(&obedient, &other).expect("finite");
+    }
+    let (expert, policy) = (mean_score(&judge, &obedient), mean_score(&judge, &other));
+    assert!(expert > policy + 0.5, "{expert} {policy}");
 }
 
 #[test]

@@ -10,7 +10,7 @@ use crate::gae::{self, Returns};
 use crate::ppo::{PpoFigures, Rows};
 use crate::report::moments;
 use crate::style::style_reward;
-use crate::window::{Past, repeat_oldest};
+use crate::window::{Cut, Past, repeat_oldest};
 use crate::{OBSERVATION, inference};
 use rand::RngExt;
 
@@ -51,15 +51,15 @@ impl Learning {
             style_rewards,
             ..
         } = &mut self.scratch;
-        let scaling = self.core.discriminator.scaling();
+        let view = self.core.discriminator.view();
         past.of(batch);
         windows.clear();
-        let frames = self.config.discriminator.frames;
+        let cut = Cut::new(&self.config.discriminator, &self.robot);
         let mut window = Vec::with_capacity(self.core.discriminator.width());
         for row in 0..batch.rows() {
             window.clear();
-            past.write(batch, row, frames, &mut window);
-            scaling.apply(&window, windows);
+            past.write(batch, row, &cut, &mut window);
+            view.apply(&window, windows);
         }
         scores.clear();
         self.core.discriminator.scores(windows, scores);
@@ -195,6 +195,7 @@ impl Learning {
             ..
         } = &mut self.scratch;
         let core = &mut self.core;
+        let cut = Cut::new(config, &self.robot);
         let count = config.steps * config.batch;
         expert.clear();
         let width = core.discriminator.width();
@@ -204,7 +205,7 @@ impl Learning {
         if config.frames > 2 {
             for window in expert.chunks_exact_mut(width) {
                 let row = core.generator.random_range(0..batch.rows());
-                repeat_oldest(window, past.real(row, config.frames));
+                repeat_oldest(&mut window[..cut.states()], past.real(row, config.frames));
             }
         }
         policy.clear();
@@ -214,16 +215,16 @@ impl Learning {
                 policy.extend_from_slice(self.replay.draw(&mut core.generator));
             } else {
                 let row = core.generator.random_range(0..batch.rows());
-                past.write(batch, row, config.frames, policy);
+                past.write(batch, row, &cut, policy);
             }
         }
         core.discriminator.observe(expert);
         core.discriminator.observe(policy);
-        let scaling = core.discriminator.scaling();
+        let view = core.discriminator.view();
         scaled.clear();
-        scaling.apply(expert, scaled);
+        view.apply(expert, scaled);
         scaled_policy.clear();
-        scaling.apply(policy, scaled_policy);
+        view.apply(policy, scaled_policy);
         core.discriminator.update(scaled, scaled_policy)
     }
 
@@ -234,12 +235,12 @@ impl Learning {
         // A mirrored robot's observations are as likely: statistics of both keep the two sides alike.
         core.observations.update(&self.scratch.mirrored);
         let rows = batch.rows();
+        let cut = Cut::new(&self.config.discriminator, &self.robot);
         let mut window = Vec::with_capacity(core.discriminator.width());
         for _ in 0..self.config.discriminator.replay_insert.min(rows) {
             let row = core.generator.random_range(0..rows);
             window.clear();
-            let frames = self.config.discriminator.frames;
-            self.scratch.past.write(batch, row, frames, &mut window);
+            self.scratch.past.write(batch, row, &cut, &mut window);
             self.replay.insert(&window);
         }
         core.iteration += 1;

@@ -109,6 +109,21 @@ fn a_saved_state_continues_bit_by_bit() {
 }
 
 #[test]
+fn a_policy_is_taken_over_alone() {
+    let mut walker = learning();
+    run(&mut walker, 0, 3);
+    let mut other = Learning::new(config(), simple(), 999).expect("usable");
+    let judge = other.save_judge();
+    other.load_policy(&walker.save()).expect("the same sizes");
+    assert_eq!(other.policy_flat()[..100], walker.policy_flat()[..100]); // statistics and first weights
+    assert_eq!(other.save_judge(), judge);
+    assert_eq!((other.iteration(), other.samples()), (0, 0));
+    let before = other.save();
+    assert!(other.load_policy(&before[1..]).is_err());
+    assert_eq!(other.save(), before);
+}
+
+#[test]
 fn a_state_of_other_sizes_is_refused_by_name() {
     let saved = learning().save();
     let mut other = config();
