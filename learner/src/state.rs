@@ -129,9 +129,9 @@ impl State {
 
     /// Takes another run's policy over, and nothing else.
     fn begin_with(&mut self, checkpoint: &Checkpoint) -> Result<()> {
-        let part = checkpoint.part(LEARNING).with_context(|| {
-            format!("run.from: the checkpoint has no `{LEARNING}`; name one of a run, not a shipped policy")
-        })?;
+        let part = checkpoint
+            .part(LEARNING)
+            .with_context(|| format!("run.from: the checkpoint has no `{LEARNING}`"))?;
         self.learning.load_policy(part).with_context(|| {
             format!("run.from: reading its `{LEARNING}`; set policy.hidden as it was")
         })

@@ -54,6 +54,9 @@ fn an_unknown_key_of_a_preset_file_names_the_file() {
 #[test]
 fn a_policy_to_begin_with_has_to_be_there() {
     assert_says(&refused(&["--from", "nobody"]), &["nobody"]);
+    let shipped = crate::harness::repository().join("deploy/policies/walk");
+    let shipped = shipped.to_str().expect("text");
+    assert_says(&refused(&["--from", shipped]), &["walk", "critic", "run"]);
 }
 
 #[test]

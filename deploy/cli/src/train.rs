@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use amp::PolicyConfig;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use motion::Dataset;
@@ -91,6 +92,19 @@ impl Train {
         self.apply(&mut config)?;
         if let Some(from) = &self.from {
             let kept = Kept::open(&self.place, from)?;
+            if kept.part("learning.bin").is_err() {
+                return Err(usage(format!(
+                    "--from {from}: a shipped policy has no critic to begin with; name a run or one of its checkpoints"
+                )));
+            }
+            let own: PolicyConfig = config.section("policy")?;
+            let theirs = &kept.learning.policy;
+            if (&own.hidden, &own.critic_hidden) != (&theirs.hidden, &theirs.critic_hidden) {
+                return Err(usage(format!(
+                    "--from {from}: its networks are policy.hidden={:?} and policy.critic_hidden={:?}; set both like that",
+                    theirs.hidden, theirs.critic_hidden
+                )));
+            }
             let path =
                 std::path::absolute(&kept.path).context("finding the policy to begin with")?;
             let path = path.to_str().context("the path of --from is not text")?;
