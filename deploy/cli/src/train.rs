@@ -42,7 +42,7 @@ pub(crate) struct Train {
     /// Set one value of the configuration, as in ppo.epochs=4 or seed=7; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Begin with the policy of another run, or of a checkpoint's folder: its networks and statistics, nothing else
+    /// Begin with the policy of another run, or of a checkpoint's folder: its networks, their optimizer, statistics of observations
     #[arg(long, value_name = "RUN|FOLDER", conflicts_with = "resume")]
     from: Option<String>,
     /// Go on from the last checkpoint of --run, or of the newest run; without one, from its start

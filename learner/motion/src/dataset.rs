@@ -8,14 +8,18 @@ use crate::config::{ClipConfig, Gait, MotionConfig, wrong};
 use crate::error::MotionError;
 use crate::strata::Strata;
 use crate::{gait, import};
-use g1::observation::features;
+use g1::observation::{ANGULAR_VELOCITY, LINEAR_VELOCITY, features};
 use g1::{FEATURES, RobotState};
 use rand::{Rng, RngExt};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// Which features are velocity forward and aside, m/s, and yaw rate, rad/s.
-const VELOCITY: [usize; 3] = [1, 2, 6];
+const VELOCITY: [usize; 3] = [
+    LINEAR_VELOCITY.start,
+    LINEAR_VELOCITY.start + 1,
+    ANGULAR_VELOCITY.end - 1,
+];
 
 /// Clips with what is needed to draw from them.
 ///
@@ -300,6 +304,25 @@ mod tests {
             command: [base, 0.0, 0.0],
             weight,
         }
+    }
+
+    #[test]
+    fn a_window_tells_the_command_that_it_obeys() {
+        let mut rng = Pcg64Mcg::seed_from_u64(3);
+        let mut window = [0.0; 2 * FEATURES];
+        let walk = Dataset::of(vec![gait::walk(0.8).expect("a gait")]);
+        let asked = walk.clips()[0].command;
+        assert_eq!(walk.sample_window(&mut rng, &mut window), asked);
+        // Who sets off is not there yet: its speed as of now, between none and the last.
+        let start = Dataset::of(vec![gait::start(0.8).expect("a gait")]);
+        let speeds: Vec<f32> = (0..300)
+            .map(|_| {
+                let [forward, ..] = start.sample_window(&mut rng, &mut window);
+                assert!((forward - (window[1] + window[FEATURES + 1]) / 2.0).abs() < 1e-6);
+                forward
+            })
+            .collect();
+        assert!(speeds.iter().any(|speed| *speed < 0.2) && speeds.iter().any(|speed| *speed > 0.6));
     }
 
     #[test]

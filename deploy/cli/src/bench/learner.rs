@@ -282,7 +282,7 @@ fn robot() -> Robot {
     Robot {
         observation_mirror: identity(OBSERVATION),
         action_mirror: identity(ACTION),
-        command: 10..13,
+        command: g1::observation::COMMAND,
         features: vec![FeatureKind::JointPosition; amp::FEATURES],
         joints: vec![JointGroup::Leg; ACTION],
     }

@@ -62,8 +62,8 @@ impl Judge {
         (JUDGE, self.learning.save_judge())
     }
 
-    /// Takes one step of one robot: the features (53) before and after it, and the command in force. Before the first step of an
-    /// episode nothing is known, so its first state stands for those before, as in training.
+    /// Takes one step of one robot: the features (53) before and after it, and the command in force. Before the first
+    /// step of an episode nothing is known, so its first state stands for those before, as in training.
     pub(super) fn take(
         &mut self,
         robot: usize,
