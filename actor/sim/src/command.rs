@@ -4,6 +4,7 @@
 //! and every few seconds after, by the same rule.
 
 use crate::config::{self, Invalid, range};
+use crate::kind::{Kind, KindsConfig};
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +30,10 @@ pub struct CommandConfig {
     /// Share of starts from reference motion whose command is that motion's own velocity.
     /// Default 0.9, of the recipe that walked; 0.7 later in training.
     pub matched_share: f32,
+    /// Robots that keep to one kind of command each, so that every kind gets its share of the samples.
+    /// Default: none does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kinds: Option<KindsConfig>,
 }
 
 impl Default for CommandConfig {
@@ -41,6 +46,7 @@ impl Default for CommandConfig {
             pure_share: 0.0,
             resample_seconds: [3.0, 10.0],
             matched_share: 0.9,
+            kinds: None,
         }
     }
 }
@@ -59,7 +65,10 @@ impl CommandConfig {
             self.resample_seconds[0],
             0.02,
         )?;
-        config::share("command.matched_share", self.matched_share)
+        config::share("command.matched_share", self.matched_share)?;
+        self.kinds
+            .as_ref()
+            .map_or(Ok(()), |kinds| kinds.validate(self))
     }
 
     /// A command from the ranges.
@@ -81,9 +90,22 @@ impl CommandConfig {
         if stand { [0.0; 3] } else { command }
     }
 
+    /// A command for the beginning of an episode of a robot that keeps to a kind, or to none.
+    pub fn draw_of(&self, kind: Option<Kind>, rng: &mut impl Rng) -> [f32; 3] {
+        match kind {
+            Some(kind) => kind.draw(self, rng),
+            None => self.draw(rng),
+        }
+    }
+
     /// A command for a start from motion that goes at `clip`: that velocity in the matched share.
-    pub fn draw_for_start(&self, clip: &[f32; 3], rng: &mut impl Rng) -> [f32; 3] {
-        let drawn = self.draw(rng);
+    pub fn draw_for_start(
+        &self,
+        kind: Option<Kind>,
+        clip: &[f32; 3],
+        rng: &mut impl Rng,
+    ) -> [f32; 3] {
+        let drawn = self.draw_of(kind, rng);
         if rng.random::<f32>() < self.matched_share {
             *clip
         } else {
@@ -159,7 +181,7 @@ mod tests {
                 ..CommandConfig::default()
             };
             let matched = (0..2_000)
-                .filter(|_| config.draw_for_start(&clip, &mut rng) == clip)
+                .filter(|_| config.draw_for_start(None, &clip, &mut rng) == clip)
                 .count();
             // Binomial(2000, 0.9) has a deviation of 13.4.
             assert!(matched.abs_diff(expected) < 67, "{matched} of {expected}");

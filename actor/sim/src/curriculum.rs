@@ -19,6 +19,9 @@ pub struct CurriculumConfig {
     /// `task.kernel` at the end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kernel: Option<f32>,
+    /// `task.effort_weight` at the end, 1/J.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub effort_weight: Option<f32>,
     /// `task.stray.share` at the end, where there is a `task.stray`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stray_share: Option<f32>,
@@ -51,6 +54,9 @@ impl CurriculumConfig {
         )?;
         if let Some(kernel) = self.kernel {
             config::at_least("curriculum.kernel", kernel, 0.0)?;
+        }
+        if let Some(weight) = self.effort_weight {
+            config::at_least("curriculum.effort_weight", weight, 0.0)?;
         }
         if let Some(share) = self.stray_share {
             config::at_least("curriculum.stray_share", share, 0.0)?;
@@ -88,6 +94,7 @@ impl TaskConfig {
             }
         };
         go(&mut task.kernel, curriculum.kernel);
+        go(&mut task.effort_weight, curriculum.effort_weight);
         if let Some(stray) = &mut task.stray {
             go(&mut stray.share, curriculum.stray_share);
         }
@@ -120,6 +127,7 @@ mod tests {
                 from_samples: 1e6,
                 to_samples: 3e6,
                 kernel: Some(6.0),
+                effort_weight: Some(0.1),
                 stray_share: Some(0.25),
                 forward: Some([-0.4, 2.0]),
                 ..CurriculumConfig::default()
@@ -131,6 +139,7 @@ mod tests {
         assert_eq!(task.at(2e6).stray.unwrap().share, 0.375); // from 0.5
         assert_eq!(task.at(1e6).kernel, 2.0);
         assert_eq!(task.at(2e6).kernel, 4.0);
+        assert_eq!(task.at(2e6).effort_weight, 0.05);
         assert_eq!(task.at(2e6).command.forward, [0.0, 1.6]); // from 0.4 and 1.2
         assert_eq!(task.at(9e6).kernel, 6.0);
         assert_eq!(task.at(9e6).command.forward, [-0.4, 2.0]);

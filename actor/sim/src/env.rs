@@ -5,6 +5,7 @@
 //! engine, beside all others ([`Bodies`]).
 
 use crate::actuator;
+use crate::kind::Pools;
 use crate::physics::Bodies;
 use crate::randomization::RandomizationConfig;
 use crate::start::{self, Starts};
@@ -20,6 +21,10 @@ pub(crate) struct Setting {
     pub(crate) task: TaskConfig,
     pub(crate) randomization: RandomizationConfig,
     pub(crate) starts: Starts,
+    /// The starts by kind of command.
+    pub(crate) pools: Pools,
+    /// Robots of the fleet.
+    pub(crate) robots: usize,
 }
 
 /// What a step of one environment brought.
@@ -82,8 +87,11 @@ impl Environment {
     /// Begins a new episode.
     fn reset(&mut self, setting: &Setting, bodies: &mut Bodies, index: usize) {
         let variation = setting.randomization.draw_variation(&mut self.random);
+        let kinds = setting.task.command.kinds.as_ref();
+        let kind = kinds.map(|kinds| kinds.of_robot(index, setting.robots));
         let (state, command) = start::draw(
             &setting.starts,
+            kind.map(|kind| (kind, &setting.pools)),
             &setting.task.start,
             &setting.task.command,
             &mut self.random,
@@ -142,7 +150,7 @@ impl Environment {
         };
         let (energy, foot_forces) = bodies.work_and_forces(index);
         Outcome {
-            task_reward: setting.task.reward(&self.command, &self.state),
+            task_reward: setting.task.reward(&self.command, &self.state, energy),
             tracking_error: task::tracking_error(&self.command, &self.state),
             energy,
             foot_forces,

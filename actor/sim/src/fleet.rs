@@ -6,6 +6,7 @@
 use crate::actuator::Gains;
 use crate::config::{self, Invalid};
 use crate::env::{Environment, Setting};
+use crate::kind::Pools;
 use crate::physics::{Bodies, Exertion, Physics, SavedBodies};
 use crate::randomization::RandomizationConfig;
 use crate::start::Starts;
@@ -144,7 +145,9 @@ impl Fleet {
         let setting = Setting {
             task: task.clone(),
             randomization: randomization.clone(),
+            pools: Pools::of(&starts),
             starts,
+            robots: environments,
         };
         let mut bodies = Bodies::new(task.physics, &gains, environments);
         let mut fleet = Self {

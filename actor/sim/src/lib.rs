@@ -12,6 +12,7 @@
 //! | the task reward (Eq. 14), falls, time-outs | [`task`] |
 //! | a task that grows with the samples | [`curriculum`] |
 //! | commands c_t | [`command`] |
+//! | kinds of command, each with its share of the robots | [`kind`] |
 //! | where episodes begin | [`start`] |
 //! | domain randomisation (Table I) | [`randomization`] |
 //! | straying from the command ends an episode | [`stray`] |
@@ -28,6 +29,7 @@ pub mod curriculum;
 pub mod engine;
 mod env;
 pub mod fleet;
+pub mod kind;
 pub mod model;
 pub mod physics;
 pub mod randomization;
@@ -43,6 +45,7 @@ pub use config::Invalid;
 pub use curriculum::CurriculumConfig;
 pub use engine::Engine;
 pub use fleet::{Fleet, LastStep, SimError, StepOut};
+pub use kind::{Kind, KindsConfig};
 pub use model::Variation;
 pub use physics::Physics;
 pub use randomization::RandomizationConfig;

@@ -5,6 +5,7 @@
 
 use crate::command::CommandConfig;
 use crate::config::{self, Invalid};
+use crate::kind::{Kind, Pools};
 use g1::{JOINT_TABLE, RobotState, kinematics};
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
@@ -110,20 +111,26 @@ impl Starts {
     }
 }
 
-/// Draws the state and the command of a new episode.
+/// Draws the state and the command of a new episode, of one kind or of any.
 pub(crate) fn draw(
     starts: &Starts,
+    kind: Option<(Kind, &Pools)>,
     start: &StartConfig,
     commands: &CommandConfig,
     rng: &mut impl Rng,
 ) -> (RobotState, [f32; 3]) {
     let from_motion = rng.random::<f32>() < start.reference_share;
-    let (mut state, command) = match starts.draw(rng).filter(|_| from_motion) {
+    let frame = match kind {
+        Some((kind, pools)) => pools.draw(kind, rng),
+        None => starts.draw(rng),
+    };
+    let kind = kind.map(|(kind, _)| kind);
+    let (mut state, command) = match frame.filter(|_| from_motion) {
         Some(frame) => {
-            let command = commands.draw_for_start(&starts.commands[frame], rng);
+            let command = commands.draw_for_start(kind, &starts.commands[frame], rng);
             (starts.states[frame], command)
         }
-        None => (RobotState::standing(), commands.draw(rng)),
+        None => (RobotState::standing(), commands.draw_of(kind, rng)),
     };
     perturb(&mut state, start, rng);
     place(&mut state, start.lift);
@@ -188,7 +195,7 @@ mod tests {
         let mut rng = Pcg64Mcg::seed_from_u64(1);
         let mut flying = 0;
         for _ in 0..1_000 {
-            let (state, command) = draw(&frames(), &start, &commands, &mut rng);
+            let (state, command) = draw(&frames(), None, &start, &commands, &mut rng);
             if command[0] == 2.2 {
                 flying += 1;
                 assert!((clearance(&state) - 0.1).abs() < 1e-5);
@@ -233,7 +240,7 @@ mod tests {
             ..StartConfig::default()
         };
         for starts in [Starts::default(), frames()] {
-            let (state, command) = draw(&starts, &start, &commands, &mut rng);
+            let (state, command) = draw(&starts, None, &start, &commands, &mut rng);
             assert_eq!(state.joint_positions, g1::DEFAULT_POSE);
             assert!((0.4..=1.2).contains(&command[0]));
         }

@@ -27,6 +27,10 @@ pub struct TaskConfig {
     /// kernel. Default 0: Eq. 14 has velocities only. The recipe that walked used 0.25; without it
     /// nothing in the task tells the robot to keep its heading.
     pub yaw_rate_weight: f32,
+    /// What a joule of positive mechanical work in a control step takes off the task reward, as the
+    /// exponent of a factor, 1/J. Default 0: nothing in Eq. 14 asks for less energy. Walking at 1 m/s
+    /// takes 2 to 3 J a step.
+    pub effort_weight: f32,
     /// Pelvis height below which the robot has fallen, m. Default 0.55, of the recipe that walked.
     pub fall_height: f32,
     /// Uprightness −g_z below which the robot has fallen. Default 0.7, a tilt of 46°.
@@ -54,6 +58,7 @@ impl Default for TaskConfig {
             physics: Physics::Rapier,
             kernel: 0.25,
             yaw_rate_weight: 0.0,
+            effort_weight: 0.0,
             fall_height: 0.55,
             fall_upright: 0.7,
             episode_steps: 1_000,
@@ -71,6 +76,7 @@ impl TaskConfig {
     pub fn validate(&self) -> Result<(), Invalid> {
         config::at_least("kernel", self.kernel, 0.0)?;
         config::at_least("yaw_rate_weight", self.yaw_rate_weight, 0.0)?;
+        config::at_least("effort_weight", self.effort_weight, 0.0)?;
         config::at_least("fall_height", self.fall_height, 0.0)?;
         config::require(
             self.fall_height < 0.75,
@@ -98,13 +104,16 @@ impl TaskConfig {
             .map_or(Ok(()), CurriculumConfig::validate)
     }
 
-    /// Task reward: rᴳ = exp(−k·(‖v* − v‖² + w·(ω* − ω)²))·r_upright   (Eq. 14; w = 0 in the paper)
+    /// Task reward: rᴳ = exp(−k·(‖v* − v‖² + w·(ω* − ω)²) − e·E)·r_upright   (Eq. 14; w = e = 0 in the
+    /// paper)
     ///
-    /// v is the pelvis' planar velocity in the heading frame, ω its yaw rate about the vertical.
-    pub fn reward(&self, command: &[f32; 3], state: &RobotState) -> f32 {
+    /// v is the pelvis' planar velocity in the heading frame, ω its yaw rate about the vertical, E the
+    /// positive mechanical work of the step, J. A factor, so that rᴳ stays between 0 and 1, where Eq. 9
+    /// and Eq. 12 expect it.
+    pub fn reward(&self, command: &[f32; 3], state: &RobotState, work: f32) -> f32 {
         let yaw_error = command[2] - state.angular_velocity.z;
         let error = tracking_error(command, state) + self.yaw_rate_weight * yaw_error.powi(2);
-        (-self.kernel * error).exp() * upright(state)
+        (-self.kernel * error - self.effort_weight * work).exp() * upright(state)
     }
 
     /// Whether the robot lies, or is about to.
@@ -170,15 +179,15 @@ mod tests {
     fn equation_14_by_hand() {
         let task = TaskConfig::default();
         // v = (1, 0) in the heading frame. v* = (1, 0): no error, upright.
-        assert!(close(task.reward(&[1.0, 0.0, 0.5], &walking()), 1.0));
+        assert!(close(task.reward(&[1.0, 0.0, 0.5], &walking(), 0.0), 1.0));
         // v* = (3, 1): error 2² + 1² = 5, exp(−5/4) = 0.286505.
         assert!(close(tracking_error(&[3.0, 1.0, 0.0], &walking()), 5.0));
         assert!(close(
-            task.reward(&[3.0, 1.0, 0.0], &walking()),
+            task.reward(&[3.0, 1.0, 0.0], &walking(), 0.0),
             0.286_504_8
         ));
         // The literal equation ignores the yaw rate.
-        assert!(close(task.reward(&[1.0, 0.0, -9.0], &walking()), 1.0));
+        assert!(close(task.reward(&[1.0, 0.0, -9.0], &walking(), 0.0), 1.0));
     }
 
     #[test]
@@ -187,7 +196,7 @@ mod tests {
         state.orientation *= UnitQuaternion::from_euler_angles(FRAC_PI_3, 0.0, 0.0);
         // Rolled by 60°: cos 60° = ½; the heading is unchanged.
         assert!(close(
-            TaskConfig::default().reward(&[1.0, 0.0, 0.0], &state),
+            TaskConfig::default().reward(&[1.0, 0.0, 0.0], &state, 0.0),
             0.5
         ));
         // Upside down pays nothing rather than less than nothing.
@@ -203,8 +212,18 @@ mod tests {
             ..TaskConfig::default()
         };
         // Velocity error ½ m/s, yaw error 1 rad/s: exp(−2·(¼ + ¼·1)) = exp(−1).
-        let reward = task.reward(&[1.5, 0.0, 1.5], &walking());
+        let reward = task.reward(&[1.5, 0.0, 1.5], &walking(), 0.0);
         assert!(close(reward, 0.367_879_44), "{reward}");
+    }
+
+    #[test]
+    fn work_costs_a_share_where_it_counts() {
+        let mut task = TaskConfig::default();
+        assert!(close(task.reward(&[1.0, 0.0, 0.5], &walking(), 9.0), 1.0));
+        // Two joules at 0.05 each: exp(−0.1).
+        task.effort_weight = 0.05;
+        let reward = task.reward(&[1.0, 0.0, 0.5], &walking(), 2.0);
+        assert!(close(reward, 0.904_837_4), "{reward}");
     }
 
     #[test]

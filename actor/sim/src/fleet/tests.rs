@@ -248,7 +248,10 @@ fn reward_and_error_are_those_of_the_state_reached_under_the_old_command() {
         let out = step(&mut fleet, &[0.0; ACTION]);
         assert_eq!(out.ends[0], 0.0);
         let state = fleet.state(0);
-        assert_eq!(out.task_rewards[0], task.reward(&command, state));
+        assert_eq!(
+            out.task_rewards[0],
+            task.reward(&command, state, out.energies[0])
+        );
         assert_eq!(
             out.tracking_errors[0],
             crate::task::tracking_error(&command, state)

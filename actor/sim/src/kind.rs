@@ -1,0 +1,271 @@
+//! Kinds of command, and robots dealt to them: every kind gets its share of the samples.
+//!
+//! Separate because drawing commands in shares does not share samples. A robot that cannot do yet
+//! what it is told falls and begins anew, one that can goes on for the rest of its episode: of two
+//! kinds of command, drawn as often, the one that is learnt already gets five times the samples of
+//! the other, and the other is not learnt. A robot that keeps to one kind spends all its steps on it.
+
+use crate::command::CommandConfig;
+use crate::config::{self, Invalid};
+use crate::start::Starts;
+use rand::{Rng, RngExt};
+use serde::{Deserialize, Serialize};
+
+/// What a command asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Nothing: stand still.
+    Standing,
+    /// Straight on.
+    Forward,
+    /// Straight back.
+    Backward,
+    /// Aside alone.
+    Lateral,
+    /// Turning on the spot.
+    Turning,
+    /// More than one of them.
+    Mixed,
+}
+
+/// All kinds, in the order of [`KindsConfig`].
+const KINDS: [Kind; 6] = [
+    Kind::Standing,
+    Kind::Forward,
+    Kind::Backward,
+    Kind::Lateral,
+    Kind::Turning,
+    Kind::Mixed,
+];
+
+impl Kind {
+    /// The kind of a command.
+    pub fn of([forward, lateral, yaw_rate]: [f32; 3]) -> Self {
+        match [forward, lateral, yaw_rate].map(|x| x != 0.0) {
+            [false, false, false] => Self::Standing,
+            [true, false, false] if forward > 0.0 => Self::Forward,
+            [true, false, false] => Self::Backward,
+            [false, true, false] => Self::Lateral,
+            [false, false, true] => Self::Turning,
+            _ => Self::Mixed,
+        }
+    }
+
+    /// A command of this kind from the ranges.
+    pub(crate) fn draw(self, ranges: &CommandConfig, rng: &mut impl Rng) -> [f32; 3] {
+        let [slowest, fastest] = ranges.forward;
+        let forward = match self {
+            Self::Forward => [slowest.max(0.0), fastest],
+            Self::Backward => [slowest, fastest.min(0.0)],
+            _ => ranges.forward,
+        };
+        // A curriculum may have a range that leaves nothing of this kind yet: then its near end.
+        let forward = [forward[0].min(fastest), forward[1].max(slowest)];
+        let [vx, vy, yaw_rate] = [forward, ranges.lateral, ranges.yaw_rate]
+            .map(|[least, greatest]| rng.random_range(least..=greatest));
+        match self {
+            Self::Standing => [0.0; 3],
+            Self::Forward | Self::Backward => [vx, 0.0, 0.0],
+            Self::Lateral => [0.0, vy, 0.0],
+            Self::Turning => [0.0, 0.0, yaw_rate],
+            Self::Mixed => [vx, vy, yaw_rate],
+        }
+    }
+}
+
+/// Relative numbers of robots that keep to a kind: their episodes begin with a command of it and, from
+/// reference motion, in motion of it. Commands that change inside an episode may be of any kind.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct KindsConfig {
+    /// Stand still.
+    pub standing: f32,
+    /// Straight on.
+    pub forward: f32,
+    /// Straight back.
+    pub backward: f32,
+    /// Aside alone.
+    pub lateral: f32,
+    /// Turning on the spot.
+    pub turning: f32,
+    /// All three parts at once.
+    pub mixed: f32,
+}
+
+impl KindsConfig {
+    /// Checks every field against the ranges of commands; names the first bad one and a remedy.
+    pub(crate) fn validate(&self, ranges: &CommandConfig) -> Result<(), Invalid> {
+        let fields = [
+            "command.kinds.standing",
+            "command.kinds.forward",
+            "command.kinds.backward",
+            "command.kinds.lateral",
+            "command.kinds.turning",
+            "command.kinds.mixed",
+        ];
+        for (field, weight) in fields.into_iter().zip(self.weights()) {
+            config::at_least(field, weight, 0.0)?;
+        }
+        config::require(
+            self.weights().iter().sum::<f32>() > 0.0,
+            "command.kinds",
+            self.weights(),
+            "give at least one kind a share, or leave the table out",
+        )?;
+        config::require(
+            self.forward == 0.0 || ranges.forward[1] > 0.0,
+            "command.kinds.forward",
+            self.forward,
+            "let command.forward reach above 0, or give 0",
+        )?;
+        config::require(
+            self.backward == 0.0 || ranges.forward[0] < 0.0,
+            "command.kinds.backward",
+            self.backward,
+            "let command.forward begin below 0, or give 0",
+        )
+    }
+
+    fn weights(&self) -> [f32; 6] {
+        [
+            self.standing,
+            self.forward,
+            self.backward,
+            self.lateral,
+            self.turning,
+            self.mixed,
+        ]
+    }
+
+    /// The kind that robot `index` of `robots` keeps to.
+    pub(crate) fn of_robot(&self, index: usize, robots: usize) -> Kind {
+        let weights = self.weights();
+        let at = (index as f32 + 0.5) / robots as f32 * weights.iter().sum::<f32>();
+        let mut sum = 0.0;
+        let found = KINDS.into_iter().zip(weights).find(|(_, weight)| {
+            sum += weight;
+            at < sum
+        });
+        found.map_or(Kind::Mixed, |(kind, _)| kind)
+    }
+}
+
+/// Frames of reference motion by the kind of their command.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pools {
+    /// Of each kind: the frame, and the running sum of the kind's weights.
+    frames: [Vec<(usize, f32)>; KINDS.len()],
+}
+
+impl Pools {
+    /// Sorted once, for draws without a search through all frames.
+    pub(crate) fn of(starts: &Starts) -> Self {
+        let mut pools = Self::default();
+        let mut before = 0.0;
+        for (frame, &sum) in starts.cumulative_weights.iter().enumerate() {
+            let pool = &mut pools.frames[Kind::of(starts.commands[frame]) as usize];
+            let within = pool.last().map_or(0.0, |&(_, sum)| sum);
+            pool.push((frame, within + sum - before));
+            before = sum;
+        }
+        pools
+    }
+
+    /// A frame of a kind by weight; none if no motion is of that kind.
+    pub(crate) fn draw(&self, kind: Kind, rng: &mut impl Rng) -> Option<usize> {
+        let pool = &self.frames[kind as usize];
+        let &(_, total) = pool.last()?;
+        let at = rng.random::<f32>() * total;
+        let place = pool.partition_point(|&(_, sum)| sum <= at);
+        Some(pool[place.min(pool.len() - 1)].0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use g1::RobotState;
+    use rand::SeedableRng;
+    use rand_pcg::Pcg64Mcg;
+
+    fn ranges() -> CommandConfig {
+        CommandConfig {
+            forward: [-0.5, 1.5],
+            lateral: [-0.4, 0.4],
+            yaw_rate: [-1.0, 1.0],
+            ..CommandConfig::default()
+        }
+    }
+
+    #[test]
+    fn what_a_kind_draws_is_of_that_kind() {
+        let mut rng = Pcg64Mcg::seed_from_u64(1);
+        for kind in KINDS {
+            for _ in 0..200 {
+                let command = kind.draw(&ranges(), &mut rng);
+                assert_eq!(Kind::of(command), kind, "{command:?}");
+                assert!((-0.5..=1.5).contains(&command[0]) && command[1].abs() <= 0.4);
+            }
+        }
+        // Nothing of the kind in the range: as near as it goes, and no panic.
+        let ahead = CommandConfig {
+            forward: [0.4, 1.2],
+            ..ranges()
+        };
+        assert_eq!(Kind::Backward.draw(&ahead, &mut rng), [0.4, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn robots_are_dealt_by_weight() {
+        let kinds = KindsConfig {
+            forward: 3.0,
+            lateral: 1.0,
+            turning: 4.0,
+            ..KindsConfig::default()
+        };
+        let dealt: Vec<_> = (0..16).map(|i| kinds.of_robot(i, 16)).collect();
+        let count = |kind| dealt.iter().filter(|&&k| k == kind).count();
+        assert_eq!(
+            KINDS.map(count),
+            [0, 6, 0, 2, 8, 0],
+            "3, 1 and 4 eighths of 16: {dealt:?}"
+        );
+    }
+
+    #[test]
+    fn frames_are_drawn_by_weight_within_their_kind() {
+        let frame = |command, weight| (RobotState::standing(), command, weight);
+        let starts: Starts = [
+            frame([0.8, 0.0, 0.0], 5.0),
+            frame([0.0, 0.3, 0.0], 1.0),
+            frame([0.0; 3], 2.0),
+            frame([0.0, -0.3, 0.0], 3.0),
+        ]
+        .into_iter()
+        .collect();
+        let pools = Pools::of(&starts);
+        let mut rng = Pcg64Mcg::seed_from_u64(2);
+        let mut drawn = [0; 4];
+        for _ in 0..1_000 {
+            drawn[pools.draw(Kind::Lateral, &mut rng).unwrap()] += 1;
+        }
+        // Weight 3 of 4: Binomial(1000, ¾) is 750 ± 13.7.
+        assert!(drawn[0] == 0 && drawn[2] == 0 && (682..818).contains(&drawn[3]));
+        assert_eq!(pools.draw(Kind::Standing, &mut rng), Some(2));
+        assert_eq!(pools.draw(Kind::Turning, &mut rng), None);
+    }
+
+    #[test]
+    fn kinds_without_a_range_are_refused() {
+        let mut config = ranges();
+        config.forward = [0.4, 1.2];
+        config.kinds = Some(KindsConfig {
+            backward: 1.0,
+            ..KindsConfig::default()
+        });
+        let error = config.validate().unwrap_err().to_string();
+        assert!(error.contains("command.kinds.backward = 1"), "{error}");
+        config.kinds = Some(KindsConfig::default());
+        assert!(config.validate().is_err(), "nobody has a share");
+    }
+}
