@@ -23,6 +23,11 @@ pub struct StrayConfig {
     /// Time after a start or a new command in which nothing is counted, s. Default 0.3. With 1
     /// standing paid again: a discount of 0.99 looks two seconds ahead, about as long as it then lasted.
     pub grace: f32,
+    /// The same, s, for a robot that is within what is allowed when the time begins, as after a start
+    /// from motion that fits. Default: no other. A short one tells it at once that to brake is to
+    /// stray; a short `grace` as well would have others set off in a rush.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grace_on_course: Option<f32>,
     /// Weight of the squared error of the yaw rate (rad²/s²) beside that of the velocity (m²/s²).
     /// Default 0.25.
     pub yaw_rate_weight: f32,
@@ -35,6 +40,7 @@ impl Default for StrayConfig {
             least: 0.25,
             seconds: 2.0,
             grace: 0.3,
+            grace_on_course: None,
             yaw_rate_weight: 0.25,
         }
     }
@@ -47,6 +53,9 @@ impl StrayConfig {
         config::at_least("stray.least", self.least, 0.05)?;
         config::at_least("stray.seconds", self.seconds, 0.1)?;
         config::at_least("stray.grace", self.grace, 0.0)?;
+        if let Some(grace) = self.grace_on_course {
+            config::at_least("stray.grace_on_course", grace, 0.0)?;
+        }
         config::at_least("stray.yaw_rate_weight", self.yaw_rate_weight, 0.0)
     }
 
@@ -54,6 +63,11 @@ impl StrayConfig {
     fn length(&self, velocity: [f32; 3]) -> f32 {
         let [x, y, yaw_rate] = velocity;
         (x * x + y * y + self.yaw_rate_weight * yaw_rate * yaw_rate).sqrt()
+    }
+
+    /// Greatest length of the error under a command, m/s.
+    fn allowed(&self, command: &[f32; 3]) -> f32 {
+        self.least.max(self.share * self.length(*command))
     }
 }
 
@@ -64,6 +78,8 @@ pub(crate) struct Astray {
     error: [f32; 3],
     /// Control steps since the command.
     steps: u32,
+    /// Whether the robot obeyed the command in the first of them.
+    on_course: bool,
 }
 
 impl Astray {
@@ -76,17 +92,21 @@ impl Astray {
         state: &RobotState,
     ) -> bool {
         self.steps += 1;
-        if self.steps as f32 * CONTROL_STEP <= rule.grace {
-            return false;
-        }
         let velocity = state.velocity_in_heading();
         let moving = [velocity.x, velocity.y, state.angular_velocity.z];
-        let part = CONTROL_STEP / rule.seconds;
-        for axis in 0..3 {
-            self.error[axis] += part * (command[axis] - moving[axis] - self.error[axis]);
+        let error: [f32; 3] = std::array::from_fn(|axis| command[axis] - moving[axis]);
+        if self.steps == 1 {
+            self.on_course = rule.length(error) <= rule.allowed(command);
         }
-        let allowed = rule.least.max(rule.share * rule.length(*command));
-        rule.length(self.error) > allowed
+        let other = rule.grace_on_course.filter(|_| self.on_course);
+        if self.steps as f32 * CONTROL_STEP <= other.unwrap_or(rule.grace) {
+            return false;
+        }
+        let part = CONTROL_STEP / rule.seconds;
+        for (mean, error) in self.error.iter_mut().zip(error) {
+            *mean += part * (error - *mean);
+        }
+        rule.length(self.error) > rule.allowed(command)
     }
 }
 
@@ -112,6 +132,24 @@ mod tests {
         assert_eq!(steps(&rule, [0.3, 0.0, 0.0]), 194);
         // Turning at 1 rad/s counts as ½ m/s, half of which is allowed.
         assert_eq!(steps(&rule, [0.0, 0.0, 1.0]), 84);
+    }
+
+    #[test]
+    fn who_brakes_strays_sooner_than_who_does_not_set_off() {
+        let rule = StrayConfig {
+            grace_on_course: Some(0.1),
+            ..StrayConfig::default()
+        };
+        let mut moving = RobotState::standing();
+        moving.linear_velocity.x = 0.9;
+        let mut astray = Astray::default();
+        assert!(!astray.step(&rule, &[1.0, 0.0, 0.0], &moving));
+        let standing = RobotState::standing();
+        let more = (1..).find(|_| astray.step(&rule, &[1.0, 0.0, 0.0], &standing));
+        // One step in motion, 4 more of grace, then 0.99ⁿ < ½: n = 69.
+        assert_eq!(more, Some(73));
+        // Who begins at rest has all of the longer grace: 15 and 69 steps, as above.
+        assert_eq!(steps(&rule, [1.0, 0.0, 0.0]), 84);
     }
 
     #[test]
