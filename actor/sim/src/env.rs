@@ -89,17 +89,17 @@ impl Environment {
         let variation = setting.randomization.draw_variation(&mut self.random);
         let kinds = setting.task.command.kinds.as_ref();
         let kind = kinds.map(|kinds| kinds.of_robot(index, setting.robots));
-        let (state, command) = start::draw(
+        let start = start::draw(
             &setting.starts,
             kind.map(|kind| (kind, &setting.pools)),
             &setting.task.start,
             &setting.task.command,
             &mut self.random,
         );
-        self.state = bodies.begin(index, &variation, &state);
-        self.command = command;
+        self.state = bodies.begin(index, &variation, &start.state);
+        self.command = start.command;
         self.previous_action = [0.0; JOINTS];
-        self.astray = Astray::default();
+        self.astray = Astray::at_start(start.fits);
         self.command_in = Some(setting.task.command.draw_interval(&mut self.random));
         self.push_in = setting.randomization.draw_push_interval(&mut self.random);
         self.age = 0;

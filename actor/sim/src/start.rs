@@ -111,6 +111,15 @@ impl Starts {
     }
 }
 
+/// How an episode begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Beginning {
+    pub(crate) state: RobotState,
+    pub(crate) command: [f32; 3],
+    /// Whether the robot is in motion that fits the command.
+    pub(crate) fits: bool,
+}
+
 /// Draws the state and the command of a new episode, of one kind or of any.
 pub(crate) fn draw(
     starts: &Starts,
@@ -118,23 +127,31 @@ pub(crate) fn draw(
     start: &StartConfig,
     commands: &CommandConfig,
     rng: &mut impl Rng,
-) -> (RobotState, [f32; 3]) {
+) -> Beginning {
     let from_motion = rng.random::<f32>() < start.reference_share;
     let frame = match kind {
         Some((kind, pools)) => pools.draw(kind, rng),
         None => starts.draw(rng),
     };
     let kind = kind.map(|(kind, _)| kind);
-    let (mut state, command) = match frame.filter(|_| from_motion) {
+    let (mut state, command, fits) = match frame.filter(|_| from_motion) {
         Some(frame) => {
-            let command = commands.draw_for_start(kind, &starts.commands[frame], rng);
-            (starts.states[frame], command)
+            let clip = &starts.commands[frame];
+            let command = commands.draw_for_start(kind, clip, rng);
+            (starts.states[frame], command, command == *clip)
         }
-        None => (RobotState::standing(), commands.draw_of(kind, rng)),
+        None => {
+            let command = commands.draw_of(kind, rng);
+            (RobotState::standing(), command, false)
+        }
     };
     perturb(&mut state, start, rng);
     place(&mut state, start.lift);
-    (state, command)
+    Beginning {
+        state,
+        command,
+        fits,
+    }
 }
 
 /// Adds uniform noise to the joints, within their limits.
@@ -195,7 +212,12 @@ mod tests {
         let mut rng = Pcg64Mcg::seed_from_u64(1);
         let mut flying = 0;
         for _ in 0..1_000 {
-            let (state, command) = draw(&frames(), None, &start, &commands, &mut rng);
+            let Beginning {
+                state,
+                command,
+                fits,
+            } = draw(&frames(), None, &start, &commands, &mut rng);
+            assert!(fits);
             if command[0] == 2.2 {
                 flying += 1;
                 assert!((clearance(&state) - 0.1).abs() < 1e-5);
@@ -240,8 +262,13 @@ mod tests {
             ..StartConfig::default()
         };
         for starts in [Starts::default(), frames()] {
-            let (state, command) = draw(&starts, None, &start, &commands, &mut rng);
+            let Beginning {
+                state,
+                command,
+                fits,
+            } = draw(&starts, None, &start, &commands, &mut rng);
             assert_eq!(state.joint_positions, g1::DEFAULT_POSE);
+            assert!(!fits);
             assert!((0.4..=1.2).contains(&command[0]));
         }
     }

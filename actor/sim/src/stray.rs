@@ -23,8 +23,7 @@ pub struct StrayConfig {
     /// Time after a start or a new command in which nothing is counted, s. Default 0.3. With 1
     /// standing paid again: a discount of 0.99 looks two seconds ahead, about as long as it then lasted.
     pub grace: f32,
-    /// The same, s, for a robot that is within what is allowed when the time begins, as after a start
-    /// from motion that fits. Default: no other. A short one tells it at once that to brake is to
+    /// The same, s, for a robot that begins in motion that fits its command. Default: no other. A short one tells it at once that to brake is to
     /// stray; a short `grace` as well would have others set off in a rush.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grace_on_course: Option<f32>,
@@ -78,11 +77,19 @@ pub(crate) struct Astray {
     error: [f32; 3],
     /// Control steps since the command.
     steps: u32,
-    /// Whether the robot obeyed the command in the first of them.
+    /// Whether the robot began in motion that fits the command.
     on_course: bool,
 }
 
 impl Astray {
+    /// Of a robot that begins an episode, in motion that fits its command or not.
+    pub(crate) fn at_start(on_course: bool) -> Self {
+        Self {
+            on_course,
+            ..Self::default()
+        }
+    }
+
     /// Takes one more control step in:  e ← e + (Δt/τ)·(v* − v − e), after the grace. Whether the robot
     /// has strayed.
     pub(crate) fn step(
@@ -95,9 +102,6 @@ impl Astray {
         let velocity = state.velocity_in_heading();
         let moving = [velocity.x, velocity.y, state.angular_velocity.z];
         let error: [f32; 3] = std::array::from_fn(|axis| command[axis] - moving[axis]);
-        if self.steps == 1 {
-            self.on_course = rule.length(error) <= rule.allowed(command);
-        }
         let other = rule.grace_on_course.filter(|_| self.on_course);
         if self.steps as f32 * CONTROL_STEP <= other.unwrap_or(rule.grace) {
             return false;
@@ -140,14 +144,11 @@ mod tests {
             grace_on_course: Some(0.1),
             ..StrayConfig::default()
         };
-        let mut moving = RobotState::standing();
-        moving.linear_velocity.x = 0.9;
-        let mut astray = Astray::default();
-        assert!(!astray.step(&rule, &[1.0, 0.0, 0.0], &moving));
+        let mut astray = Astray::at_start(true);
         let standing = RobotState::standing();
-        let more = (1..).find(|_| astray.step(&rule, &[1.0, 0.0, 0.0], &standing));
-        // One step in motion, 4 more of grace, then 0.99ⁿ < ½: n = 69.
-        assert_eq!(more, Some(73));
+        let braked = (1..).find(|_| astray.step(&rule, &[1.0, 0.0, 0.0], &standing));
+        // 5 steps of grace, then 0.99ⁿ < ½: n = 69.
+        assert_eq!(braked, Some(74));
         // Who begins at rest has all of the longer grace: 15 and 69 steps, as above.
         assert_eq!(steps(&rule, [1.0, 0.0, 0.0]), 84);
     }
