@@ -23,8 +23,9 @@ pub struct StrayConfig {
     /// Time after a start or a new command in which nothing is counted, s. Default 0.3. With 1
     /// standing paid again: a discount of 0.99 looks two seconds ahead, about as long as it then lasted.
     pub grace: f32,
-    /// The same, s, for a robot that begins in motion that fits its command. Default: no other. A short one tells it at once that to brake is to
-    /// stray; a short `grace` as well would have others set off in a rush.
+    /// The same, s, for a robot that begins in motion that fits its command. Default: no other. A
+    /// short one tells it at once that to brake is to stray; a short `grace` as well would have others
+    /// set off in a rush.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grace_on_course: Option<f32>,
     /// Weight of the squared error of the yaw rate (rad²/s²) beside that of the velocity (m²/s²).

@@ -29,6 +29,8 @@ pub struct Rows<'a> {
     pub observations: &'a [f32],
     /// The same rows mirrored, `[row][82]`; read if a share of rows is mirrored.
     pub mirrored: &'a [f32],
+    /// Share of each minibatch that is taken from them.
+    pub mirrored_share: f32,
     /// `[row][23]`
     pub actions: &'a [f32],
     /// Mean actions of the policy that acted, `[row][23]`.

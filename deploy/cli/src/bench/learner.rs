@@ -118,6 +118,7 @@ impl LearnerBench {
         let rows = Rows {
             observations: &observations,
             mirrored: &observations,
+            mirrored_share: config.ppo.mirrored_share,
             actions: &actions,
             means: &means,
             log_probs: &log_probs,

@@ -45,6 +45,9 @@ pub struct PpoConfig {
     pub advantage_normalization: AdvantageNormalization,
     /// Share of each minibatch that is replaced by its left–right mirror image. The recipe's half.
     pub mirrored_share: f32,
+    /// That share sinks to nothing between these numbers of samples. Default: it never does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mirrored_fade: Option<[f64; 2]>,
     /// Threads that rows are divided among. Sums are made in their order, so that results depend on this number and not
     /// on the machine.
     pub threads: usize,
@@ -96,12 +99,21 @@ impl Default for PpoConfig {
             gradient_norm: 1.0,
             advantage_normalization: AdvantageNormalization::Batch,
             mirrored_share: 0.5,
+            mirrored_fade: None,
             threads: 2,
         }
     }
 }
 
 impl PpoConfig {
+    /// Share of each minibatch that is mirrored after `samples`.
+    pub fn mirrored_share_at(&self, samples: u64) -> f32 {
+        let rest = self.mirrored_fade.map_or(1.0, |[from, to]| {
+            ((to - samples as f64) / (to - from)).clamp(0.0, 1.0)
+        });
+        self.mirrored_share * rest as f32
+    }
+
     /// Refuses the first value that learning cannot work with.
     pub fn validate(&self) -> Result<(), ConfigError> {
         Check(Ok(()))
@@ -137,7 +149,34 @@ impl PpoConfig {
             )
             .positive("gradient_norm", self.gradient_norm)
             .share("mirrored_share", self.mirrored_share)
+            .that(
+                self.mirrored_fade
+                    .is_none_or(|[from, to]| 0.0 <= from && from < to && to.is_finite()),
+                "mirrored_fade",
+                format!("{:?}", self.mirrored_fade.unwrap_or_default()),
+                "use two rising numbers of samples, such as [1e6, 2e6]",
+            )
             .count("threads", self.threads, 256)
             .0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mirrored_share_fades() {
+        let mut ppo = PpoConfig {
+            mirrored_fade: Some([1e6, 2e6]),
+            ..PpoConfig::default()
+        };
+        let shares = [0, 1_000_000, 1_500_000, 3_000_000].map(|at| ppo.mirrored_share_at(at));
+        assert_eq!(shares, [0.5, 0.5, 0.25, 0.0]);
+        ppo.mirrored_fade = Some([2e6, 1e6]);
+        let refused = ppo.validate().expect_err("a fall").to_string();
+        assert!(refused.contains("mirrored_fade"), "{refused}");
+        ppo.mirrored_fade = None;
+        assert_eq!(ppo.mirrored_share_at(u64::MAX), 0.5);
     }
 }

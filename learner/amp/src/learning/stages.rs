@@ -169,6 +169,7 @@ impl Learning {
         let rows = Rows {
             observations: &scratch.observations,
             mirrored: &scratch.mirrored_scaled,
+            mirrored_share: self.config.ppo.mirrored_share_at(self.core.samples),
             actions: &batch.actions,
             means: &batch.means,
             log_probs: &batch.log_probs,

@@ -127,7 +127,7 @@ impl Ppo {
         let mut chunk = Chunk::with_capacity(piece.len());
         for position in piece {
             let row = indices[position];
-            let mirrored = is_mirrored(position, self.config.mirrored_share);
+            let mirrored = is_mirrored(position, rows.mirrored_share);
             let observation = row * OBSERVATION..(row + 1) * OBSERVATION;
             let action = row * ACTION..(row + 1) * ACTION;
             if mirrored {

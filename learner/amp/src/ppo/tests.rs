@@ -16,7 +16,6 @@ fn config() -> LearningConfig {
             ..Default::default()
         },
         ppo: PpoConfig {
-            mirrored_share: 0.0,
             schedule: RateSchedule::Fixed,
             learning_rate: 1e-2,
             minibatch: 64,
@@ -87,6 +86,7 @@ impl Bandit {
         Rows {
             observations: &self.observations,
             mirrored: &self.observations,
+            mirrored_share: 0.0,
             actions: &self.actions,
             means: &self.means,
             log_probs: &self.log_probs,
@@ -145,13 +145,14 @@ fn one_step_moves_toward_the_better_action() {
 fn mirrored_rows_teach_the_mirror_image() {
     // All rows mirrored; the mirror swaps components 0 and 1 with a minus. Paid for component 0, the policy has to learn
     // less of component 1. One update only: the policy that plays on has no symmetry to share with its mirror image.
-    let mut config = config();
-    config.ppo.mirrored_share = 1.0;
-    let mut ppo = ppo(&config);
+    let mut ppo = ppo(&config());
     let mut rng = Pcg64::seed_from_u64(4);
     let bandit = Bandit::play(&ppo, 0.5, &mut rng, |action| action[0]);
-    ppo.update(&bandit.rows(), &[0.5; ACTION], &mut rng)
-        .expect("finite");
+    let rows = Rows {
+        mirrored_share: 1.0,
+        ..bandit.rows()
+    };
+    ppo.update(&rows, &[0.5; ACTION], &mut rng).expect("finite");
     let means = means(&ppo, &bandit.observations);
     assert!(
         means[1] < -0.05 && means[1] < -2.0 * means[0].abs(),
