@@ -128,6 +128,17 @@ fn a_read_only_folder_stops_the_writing_and_not_the_training() {
     until("another checkpoint", || {
         (checkpoints.list().pop() > stopped).then_some(())
     });
+    permit(0o555);
+    let saved = checkpoints.list().pop().expect("one at least");
+    until_iteration(&run, saved + 10);
     group.signal(Signal::TERM);
-    assert!(group.end().success(), "{}", group.stderr.text());
+    let status = group.end();
+    permit(0o755);
+    let said = group.stderr.text();
+    assert!(!status.success(), "the end could not be saved: {said}");
+    let last = checkpoints.list().pop().expect("as before");
+    assert!(
+        said.contains(&format!("iterations {} to ", last + 1)),
+        "{said}"
+    );
 }

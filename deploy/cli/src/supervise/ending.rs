@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use protocol::DomainError;
 use rustix::process::Signal;
 use tokio::time::{interval, sleep};
@@ -41,7 +41,7 @@ impl Group<'_> {
             .await?;
         let killed = self.alive(|_| true);
         self.signal(Signal::KILL, |_| true);
-        self.forced = false;
+        let forced = std::mem::take(&mut self.forced);
         self.until_ended(GRACE, stop, |_| true).await?;
 
         while let Ok(words) = self.words.try_recv() {
@@ -54,6 +54,25 @@ impl Group<'_> {
         self.report(&reason, &killed);
         match reason {
             Reason::Failed(error) => Err(error),
+            _ if forced => Ok(()),
+            _ => self.nothing_lost(),
+        }
+    }
+
+    /// An error where the last weights are in no checkpoint, as when the disk was full.
+    fn nothing_lost(&self) -> Result<()> {
+        let folder = &self.launch.folder;
+        let saved = folder.checkpoints().list().pop();
+        match (&self.pace.newest, saved) {
+            (Some(newest), saved) if saved.is_none_or(|saved| saved < newest.iteration) => {
+                bail!(
+                    "what was learnt in iterations {} to {} is lost: {} could not be written, and the log says why; once that is mended, go on with `ampco train --resume --run {}`",
+                    saved.unwrap_or(0) + 1,
+                    newest.iteration,
+                    folder.checkpoints().path(newest.iteration).display(),
+                    folder.name()
+                )
+            }
             _ => Ok(()),
         }
     }
