@@ -18,7 +18,7 @@ struct Embedded {
     walks: bool,
 }
 
-const EMBEDDED: [Embedded; 10] = [
+const EMBEDDED: [Embedded; 12] = [
     Embedded {
         name: "ampco",
         text: include_str!("../../presets/ampco.toml"),
@@ -63,6 +63,16 @@ const EMBEDDED: [Embedded; 10] = [
         name: "ampco-without-roger",
         text: include_str!("../../presets/ampco-without-roger.toml"),
         walks: true,
+    },
+    Embedded {
+        name: "forward",
+        text: include_str!("../../presets/forward.toml"),
+        walks: false,
+    },
+    Embedded {
+        name: "robust",
+        text: include_str!("../../presets/robust.toml"),
+        walks: false,
     },
     Embedded {
         name: "smoke",
