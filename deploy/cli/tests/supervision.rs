@@ -135,11 +135,14 @@ impl Drop for Guard {
     }
 }
 
+/// A learner that does three iterations of 128 samples and is done.
+const BRIEF: &str = "ready\nfor i in 1 2 3; do echo \"{\\\"iteration\\\": $i, \\\"samples\\\": $((i * 128))}\" \
+                     >> $run/metrics.jsonl; done\n";
+
 #[test]
 fn a_learner_that_is_done_ends_the_group() {
-    let learner = "ready\nfor i in 1 2 3; do echo \"{\\\"iteration\\\": $i, \\\"samples\\\": $((i * 128))}\" \
-                   >> $run/metrics.jsonl; done\nexit 0\n";
-    let stage = Stage::new(OBEDIENT, learner, OBEDIENT);
+    let learner = format!("{BRIEF}mkdir -p $run/checkpoints/00000003\nexit 0\n");
+    let stage = Stage::new(OBEDIENT, &learner, OBEDIENT);
     let (status, said) = stage.train(&[]).end();
     assert_eq!(status, Some(0), "{said}");
     assert!(said.contains("run play complete"), "{said}");
@@ -151,6 +154,19 @@ fn a_learner_that_is_done_ends_the_group() {
     assert_eq!(
         stage.lines("actor.arguments")[0].split(' ').next_back(),
         Some("0")
+    );
+    stage.assert_nothing_is_left();
+}
+
+#[test]
+fn a_learner_that_could_not_save_what_it_learnt_is_a_failure() {
+    let learner = format!("{BRIEF}mkdir -p $run/checkpoints/00000002\nexit 0\n");
+    let stage = Stage::new(OBEDIENT, &learner, OBEDIENT);
+    let (status, said) = stage.train(&[]).end();
+    assert_eq!(status, Some(1), "{said}");
+    assert!(
+        said.contains("what was learnt in iterations 3 to 3 is lost"),
+        "{said}"
     );
     stage.assert_nothing_is_left();
 }
