@@ -218,6 +218,7 @@ impl Learning {
             entropy: ppo.entropy,
             kl: ppo.kl,
             clip_fraction: ppo.clip_fraction,
+            asymmetry: ppo.asymmetry,
             learning_rate: f64::from(self.core.ppo.rate()),
             gradient_norm: ppo.gradient_norm,
             sigma: moments(&sigma)[0],

@@ -60,6 +60,8 @@ pub struct PpoFigures {
     pub gradient_norm: f64,
     /// Entropy after the update.
     pub entropy: f64,
+    /// Mean symmetry loss, 0 if it is off.
+    pub asymmetry: f64,
 }
 
 /// Actor, critic, exploration and their optimizer.
@@ -192,6 +194,7 @@ impl Ppo {
                 figures.value_loss += sums.value_loss;
                 figures.clip_fraction += sums.clipped as f64 / indices.len() as f64;
                 figures.gradient_norm += sums.norm;
+                figures.asymmetry += sums.asymmetry;
                 kl = (kl.0 + sums.kl, kl.1 + sums.kl_rows);
                 steps += 1;
             }
@@ -209,6 +212,7 @@ impl Ppo {
             &mut figures.value_loss,
             &mut figures.clip_fraction,
             &mut figures.gradient_norm,
+            &mut figures.asymmetry,
         ] {
             *figure /= f64::from(steps.max(1));
         }
@@ -238,6 +242,7 @@ impl Ppo {
             total.kl += part.kl;
             total.kl_rows += part.kl_rows;
             total.clipped += part.clipped;
+            total.asymmetry += part.asymmetry;
         }
         let norm = self.check(&mut total)?;
         if self.config.schedule == RateSchedule::PerMinibatch {
@@ -257,6 +262,7 @@ impl Ppo {
             kl: total.kl,
             kl_rows: total.kl_rows,
             clipped: total.clipped,
+            asymmetry: total.asymmetry,
             norm: f64::from(norm),
         })
     }
@@ -347,6 +353,7 @@ struct StepSums {
     kl_rows: usize,
     clipped: usize,
     norm: f64,
+    asymmetry: f64,
 }
 
 /// Shift and scale that give numbers mean 0 and deviation 1.

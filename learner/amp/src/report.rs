@@ -48,6 +48,8 @@ pub struct IterationReport {
     pub kl: f64,
     /// Share of ratios outside the clip range, over all minibatches.
     pub clip_fraction: f64,
+    /// Mean symmetry loss over all minibatches, 0 if it is off.
+    pub asymmetry: f64,
     /// Adam's rate for the next iteration.
     pub learning_rate: f64,
     /// Mean global norm of PPO's gradient before clipping.

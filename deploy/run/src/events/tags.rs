@@ -6,7 +6,7 @@
 use serde_json::Value;
 
 /// Keys of a metrics line that have a name in the field; every other number is `AMPCO/<key>`.
-const NAMES: [(&str, &str); 17] = [
+const NAMES: [(&str, &str); 18] = [
     // Mean over the batch of what one step paid, not the sum over an episode.
     ("reward_mean", "Train/mean_reward"),
     ("episode_length", "Train/mean_episode_length"),
@@ -16,6 +16,7 @@ const NAMES: [(&str, &str); 17] = [
     ("learning_rate", "Loss/learning_rate"),
     ("kl", "Loss/kl"),
     ("clip_fraction", "Loss/clip_fraction"),
+    ("asymmetry", "Loss/asymmetry"),
     ("explained_variance", "Loss/explained_variance"),
     ("gradient_norm", "Loss/gradient_norm"),
     ("discriminator_loss", "Loss/discriminator"),

@@ -48,6 +48,12 @@ pub struct PpoConfig {
     /// That share sinks to nothing between these numbers of samples. Default: it never does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mirrored_fade: Option<[f64; 2]>,
+    /// Weight of the symmetry loss: how far the actor, shown the mirror image of a row, is off the mirror image of what
+    /// it did there (see [`crate::surrogate::symmetry_loss`]). Unlike mirrored rows it takes no ratio to a density that
+    /// no policy had, so it works when exploration is narrow. Default 0: off.
+    pub symmetry_weight: f32,
+    /// Share of each minibatch that it is taken over; the critic learns from those rows mirrored.
+    pub symmetry_share: f32,
     /// Threads that rows are divided among. Sums are made in their order, so that results depend on this number and not
     /// on the machine.
     pub threads: usize,
@@ -100,12 +106,19 @@ impl Default for PpoConfig {
             advantage_normalization: AdvantageNormalization::Batch,
             mirrored_share: 0.5,
             mirrored_fade: None,
+            symmetry_weight: 0.0,
+            symmetry_share: 0.25,
             threads: 2,
         }
     }
 }
 
 impl PpoConfig {
+    /// Whether any rows are seen mirrored.
+    pub fn mirrors(&self) -> bool {
+        self.mirrored_share > 0.0 || self.symmetry_weight > 0.0
+    }
+
     /// Share of each minibatch that is mirrored after `samples`.
     pub fn mirrored_share_at(&self, samples: u64) -> f32 {
         let rest = self.mirrored_fade.map_or(1.0, |[from, to]| {
@@ -156,6 +169,8 @@ impl PpoConfig {
                 format!("{:?}", self.mirrored_fade.unwrap_or_default()),
                 "use two rising numbers of samples, such as [1e6, 2e6]",
             )
+            .not_negative("symmetry_weight", self.symmetry_weight)
+            .share("symmetry_share", self.symmetry_share)
             .count("threads", self.threads, 256)
             .0
     }

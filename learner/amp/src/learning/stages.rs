@@ -156,7 +156,7 @@ impl Learning {
         let scratch = &mut self.scratch;
         scratch.mirrored.clear();
         scratch.mirrored_scaled.clear();
-        if self.config.ppo.mirrored_share > 0.0 {
+        if self.config.ppo.mirrors() {
             let mirror = &self.robot.observation_mirror;
             scratch.mirrored.resize(batch.observations.len(), 0.0);
             let rows = batch.observations.chunks_exact(OBSERVATION);

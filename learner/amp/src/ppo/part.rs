@@ -16,6 +16,7 @@ pub(super) struct Sums {
     pub(super) kl: f64,
     pub(super) kl_rows: usize,
     pub(super) clipped: usize,
+    pub(super) asymmetry: f64,
 }
 
 /// What all shards of a minibatch have in common.
@@ -59,11 +60,8 @@ impl Ppo {
             let observations = tensor(chunk.observations, OBSERVATION, &device);
 
             let means = actor.forward(observations.clone());
-            let density = surrogate::log_density(
-                rows(&chunk.actions, ACTION),
-                means.clone(),
-                log_sigma.clone(),
-            );
+            let actions = rows(&chunk.actions, ACTION);
+            let density = surrogate::log_density(actions.clone(), means.clone(), log_sigma.clone());
             let loss = surrogate::clipped_surrogate(
                 density.clone(),
                 rows(&chunk.log_probs, 1),
@@ -79,6 +77,19 @@ impl Ppo {
                     loss - surrogate::entropy(log_sigma.clone()) * bonus
                 }
                 None => loss,
+            };
+            let loss = if self.config.symmetry_weight > 0.0 {
+                let asymmetry = surrogate::symmetry_loss(
+                    means.clone(),
+                    actions,
+                    log_sigma.clone(),
+                    tensor(chunk.lessons, 1, &device),
+                    count,
+                );
+                sums.asymmetry += f64::from(values(asymmetry.clone())[0]);
+                loss + asymmetry * self.config.symmetry_weight
+            } else {
+                loss
             };
             let mut gradients = loss.backward();
             actor.add_gradients(&mut gradients, actor_gradient);
@@ -101,10 +112,12 @@ impl Ppo {
             critic.add_gradients(&mut gradients, critic_gradient);
 
             let (means, densities) = (values(means), values(density));
-            for (i, mirrored) in chunk.mirrored.iter().enumerate() {
-                let ratio = (densities[i] - chunk.log_probs[i]).exp();
-                sums.clipped += usize::from((ratio - 1.0).abs() > self.config.clip);
-                if !mirrored {
+            for (i, role) in chunk.roles.iter().enumerate() {
+                if *role != Role::Lesson {
+                    let ratio = (densities[i] - chunk.log_probs[i]).exp();
+                    sums.clipped += usize::from((ratio - 1.0).abs() > self.config.clip);
+                }
+                if *role == Role::Own {
                     let action = i * ACTION..(i + 1) * ACTION;
                     sums.kl += surrogate::divergence(
                         &chunk.means[action.clone()],
@@ -121,24 +134,25 @@ impl Ppo {
 
     /// Copies rows together, mirrored where it is their turn.
     ///
-    /// A mirrored row keeps its log-density and advantage: it stands for what the mirrored robot would have met.
+    /// A mirrored row keeps its log-density and advantage: it stands for what the mirrored robot would have met. One
+    /// that is a lesson in symmetry has no advantage, and the mirrored mean for its action.
     fn gather(&self, minibatch: &Minibatch<'_>, piece: Range<usize>) -> Chunk {
         let Minibatch { rows, indices, .. } = minibatch;
         let mut chunk = Chunk::with_capacity(piece.len());
         for position in piece {
             let row = indices[position];
-            let mirrored = is_mirrored(position, rows.mirrored_share);
+            let role = if is_mirrored(position, rows.mirrored_share) {
+                Role::Mirrored
+            } else if self.config.symmetry_weight > 0.0
+                && is_mirrored(position, self.config.symmetry_share)
+            {
+                Role::Lesson
+            } else {
+                Role::Own
+            };
             let observation = row * OBSERVATION..(row + 1) * OBSERVATION;
             let action = row * ACTION..(row + 1) * ACTION;
-            if mirrored {
-                chunk
-                    .observations
-                    .extend_from_slice(&rows.mirrored[observation]);
-                let mut out = [0.0; ACTION];
-                self.mirror.apply(&rows.actions[action], &mut out);
-                chunk.actions.extend_from_slice(&out);
-                chunk.means.extend_from_slice(&[0.0; ACTION]); // not read: KL is that of rows as they were
-            } else {
+            if role == Role::Own {
                 chunk
                     .observations
                     .extend_from_slice(&rows.observations[observation]);
@@ -146,17 +160,45 @@ impl Ppo {
                     .actions
                     .extend_from_slice(&rows.actions[action.clone()]);
                 chunk.means.extend_from_slice(&rows.means[action]);
+            } else {
+                let done = if role == Role::Lesson {
+                    rows.means
+                } else {
+                    rows.actions
+                };
+                chunk
+                    .observations
+                    .extend_from_slice(&rows.mirrored[observation]);
+                let mut out = [0.0; ACTION];
+                self.mirror.apply(&done[action], &mut out);
+                chunk.actions.extend_from_slice(&out);
+                chunk.means.extend_from_slice(&[0.0; ACTION]); // not read: KL is that of rows as they were
             }
-            chunk.mirrored.push(mirrored);
+            chunk.roles.push(role);
             chunk.log_probs.push(rows.log_probs[row]);
-            chunk
-                .advantages
-                .push((rows.advantages[row] - minibatch.shift) * minibatch.scale);
+            let advantage = (rows.advantages[row] - minibatch.shift) * minibatch.scale;
+            let (advantage, lesson) = match role {
+                Role::Lesson => (0.0, 1.0),
+                Role::Own | Role::Mirrored => (advantage, 0.0),
+            };
+            chunk.advantages.push(advantage);
+            chunk.lessons.push(lesson);
             chunk.returns.push(rows.returns[row]);
             chunk.values.push(rows.values[row]);
         }
         chunk
     }
+}
+
+/// What a row of a minibatch is there for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Role {
+    /// It is as it was collected.
+    Own,
+    /// Its mirror image stands for what the mirrored robot would have met.
+    Mirrored,
+    /// Its mirror image is for the symmetry loss.
+    Lesson,
 }
 
 /// Rows copied together.
@@ -168,7 +210,9 @@ struct Chunk {
     advantages: Vec<f32>,
     returns: Vec<f32>,
     values: Vec<f32>,
-    mirrored: Vec<bool>,
+    /// 1 where a row is a lesson in symmetry.
+    lessons: Vec<f32>,
+    roles: Vec<Role>,
 }
 
 impl Chunk {
@@ -182,7 +226,8 @@ impl Chunk {
             advantages: column(),
             returns: column(),
             values: column(),
-            mirrored: Vec::with_capacity(rows),
+            lessons: column(),
+            roles: Vec::with_capacity(rows),
         }
     }
 }

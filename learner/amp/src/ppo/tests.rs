@@ -162,6 +162,34 @@ fn mirrored_rows_teach_the_mirror_image() {
 }
 
 #[test]
+fn lessons_in_symmetry_make_the_policy_symmetric_and_spend_no_ratio() {
+    // Paid for component 0 alone, the policy is not symmetric: that takes component 1 to be the opposite.
+    let mut config = config();
+    config.ppo.symmetry_share = 1.0;
+    let mut rng = Pcg64::seed_from_u64(5);
+    let pay = |action: &[f32]| -(action[0] - 0.5).powi(2);
+    let mut ppo = ppo(&config);
+    for _ in 0..20 {
+        let bandit = Bandit::play(&ppo, 0.3, &mut rng, pay);
+        ppo.update(&bandit.rows(), &[0.3; ACTION], &mut rng)
+            .expect("finite");
+    }
+    let bandit = Bandit::play(&ppo, 0.3, &mut rng, pay);
+    let off = |ppo: &Ppo| {
+        let means = means(ppo, &bandit.observations);
+        (means[0] + means[1]).abs()
+    };
+    let before = off(&ppo);
+    assert!(before > 0.2, "{before}");
+    ppo.config.symmetry_weight = 1.0;
+    let figures = ppo
+        .update(&bandit.rows(), &[0.3; ACTION], &mut rng)
+        .expect("finite");
+    assert!(off(&ppo) < 0.8 * before, "{} of {before}", off(&ppo));
+    assert!(figures.asymmetry > 0.0 && figures.clip_fraction == 0.0);
+}
+
+#[test]
 fn threads_change_only_the_order_of_sums() {
     let updated = |threads: usize| {
         let mut config = config();
