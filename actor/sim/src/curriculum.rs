@@ -5,6 +5,7 @@
 //! with a sharp kernel from the start, robots learnt to stand still.
 
 use crate::config::{self, Invalid, range};
+use crate::kind::check_approach;
 use crate::task::TaskConfig;
 use serde::{Deserialize, Serialize};
 
@@ -37,6 +38,9 @@ pub struct CurriculumConfig {
     /// `task.command.forward` at the end, m/s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub forward: Option<[f32; 2]>,
+    /// `task.command.kinds.approach` at the end, m/s, where there is a `task.command.kinds`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub approach: Option<f32>,
     /// `task.command.lateral` at the end, m/s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lateral: Option<[f32; 2]>,
@@ -60,6 +64,9 @@ impl CurriculumConfig {
         }
         if let Some(share) = self.stray_share {
             config::at_least("curriculum.stray_share", share, 0.0)?;
+        }
+        if let Some(approach) = self.approach {
+            check_approach("curriculum.approach", approach)?;
         }
         for (field, share) in [
             ("curriculum.reference_share", self.reference_share),
@@ -98,6 +105,9 @@ impl TaskConfig {
         if let Some(stray) = &mut task.stray {
             go(&mut stray.share, curriculum.stray_share);
         }
+        if let Some(kinds) = &mut task.command.kinds {
+            go(&mut kinds.approach, curriculum.approach);
+        }
         go(&mut task.start.reference_share, curriculum.reference_share);
         go(&mut task.command.matched_share, curriculum.matched_share);
         go(&mut task.command.standing_share, curriculum.standing_share);
@@ -117,6 +127,8 @@ impl TaskConfig {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::command::CommandConfig;
+    use crate::kind::KindsConfig;
     use crate::stray::StrayConfig;
 
     #[test]
@@ -130,12 +142,23 @@ mod tests {
                 effort_weight: Some(0.1),
                 stray_share: Some(0.25),
                 forward: Some([-0.4, 2.0]),
+                approach: Some(-0.2),
                 ..CurriculumConfig::default()
             }),
             stray: Some(StrayConfig::default()),
+            command: CommandConfig {
+                kinds: Some(KindsConfig {
+                    approach: 0.4,
+                    lateral: 1.0,
+                    ..KindsConfig::default()
+                }),
+                ..CommandConfig::default()
+            },
             ..TaskConfig::default()
         };
         task.validate().unwrap();
+        let approach = |samples| task.at(samples).command.kinds.unwrap().approach;
+        assert!((approach(2e6) - 0.1).abs() < 1e-6 && approach(9e6) == -0.2);
         assert_eq!(task.at(2e6).stray.unwrap().share, 0.375); // from 0.5
         assert_eq!(task.at(1e6).kernel, 2.0);
         assert_eq!(task.at(2e6).kernel, 4.0);

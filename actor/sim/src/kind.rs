@@ -63,11 +63,12 @@ impl Kind {
         let forward = [forward[0].min(fastest), forward[1].max(slowest)];
         let [vx, vy, yaw_rate] = [forward, ranges.lateral, ranges.yaw_rate]
             .map(|[least, greatest]| rng.random_range(least..=greatest));
+        let ahead = ranges.kinds.as_ref().map_or(0.0, |kinds| kinds.approach);
         match self {
             Self::Standing => [0.0; 3],
             Self::Forward | Self::Backward => [vx, 0.0, 0.0],
-            Self::Lateral => [0.0, vy, 0.0],
-            Self::Turning => [0.0, 0.0, yaw_rate],
+            Self::Lateral => [ahead, vy, 0.0],
+            Self::Turning => [ahead, 0.0, yaw_rate],
             Self::Mixed => [vx, vy, yaw_rate],
         }
     }
@@ -90,6 +91,10 @@ pub struct KindsConfig {
     pub turning: f32,
     /// All three parts at once.
     pub mixed: f32,
+    /// Forward velocity that lateral and turning commands have besides, m/s; a curriculum takes it away, or beyond 0 to
+    /// slants backward. Between walking on, stepping aside and walking back lie walks on a slant, between them and
+    /// standing only falls. Default 0.
+    pub approach: f32,
 }
 
 impl KindsConfig {
@@ -106,6 +111,7 @@ impl KindsConfig {
         for (field, weight) in fields.into_iter().zip(self.weights()) {
             config::at_least(field, weight, 0.0)?;
         }
+        check_approach("command.kinds.approach", self.approach)?;
         config::require(
             self.weights().iter().sum::<f32>() > 0.0,
             "command.kinds",
@@ -148,6 +154,16 @@ impl KindsConfig {
         });
         found.map_or(Kind::Mixed, |(kind, _)| kind)
     }
+}
+
+/// Refuses a forward velocity of [`KindsConfig::approach`] that nobody goes at.
+pub(crate) fn check_approach(field: &'static str, approach: f32) -> Result<(), Invalid> {
+    config::require(
+        (-3.0..=3.0).contains(&approach),
+        field,
+        approach,
+        "give a velocity from -3 to 3 m/s",
+    )
 }
 
 /// Frames of reference motion by the kind of their command.
@@ -213,6 +229,24 @@ mod tests {
             ..ranges()
         };
         assert_eq!(Kind::Backward.draw(&ahead, &mut rng), [0.4, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn stepping_aside_and_turning_are_approached_from_walking_on() {
+        let mut rng = Pcg64Mcg::seed_from_u64(1);
+        let config = CommandConfig {
+            kinds: Some(KindsConfig {
+                approach: 0.4,
+                lateral: 1.0,
+                ..KindsConfig::default()
+            }),
+            ..ranges()
+        };
+        let [ahead, aside, turn] = Kind::Lateral.draw(&config, &mut rng);
+        assert!(ahead == 0.4 && aside != 0.0 && turn == 0.0);
+        let [ahead, aside, turn] = Kind::Turning.draw(&config, &mut rng);
+        assert!(ahead == 0.4 && aside == 0.0 && turn != 0.0);
+        assert!(Kind::Backward.draw(&config, &mut rng)[0] < 0.0);
     }
 
     #[test]
