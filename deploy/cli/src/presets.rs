@@ -10,84 +10,87 @@ use crate::failure::usage;
 /// What all methods that are meant to walk begin from.
 const RECIPE: &str = include_str!("../../presets/recipe.toml");
 
+/// Every direction; also what its second stage begins from.
+const AGILE: &str = include_str!("../../presets/agile.toml");
+
 /// One of ours: part of the program, so it needs no folder beside it.
 struct Embedded {
     name: &'static str,
     text: &'static str,
-    /// Whether it lies on top of the recipe.
-    walks: bool,
+    /// What it lies on top of.
+    on: Option<&'static str>,
 }
 
 const EMBEDDED: [Embedded; 12] = [
     Embedded {
         name: "ampco",
         text: include_str!("../../presets/ampco.toml"),
-        walks: true,
+        on: Some(RECIPE),
     },
     Embedded {
         name: "ampco-literal",
         text: include_str!("../../presets/ampco-literal.toml"),
-        walks: false,
+        on: None,
     },
     Embedded {
         name: "amp-0.5",
         text: include_str!("../../presets/amp-0.5.toml"),
-        walks: true,
+        on: Some(RECIPE),
     },
     Embedded {
         name: "amp-0.7",
         text: include_str!("../../presets/amp-0.7.toml"),
-        walks: true,
+        on: Some(RECIPE),
     },
     Embedded {
         name: "amp-0.8",
         text: include_str!("../../presets/amp-0.8.toml"),
-        walks: true,
+        on: Some(RECIPE),
     },
     Embedded {
         name: "adamimic",
         text: include_str!("../../presets/adamimic.toml"),
-        walks: true,
+        on: Some(RECIPE),
     },
     Embedded {
         name: "amp-roger",
         text: include_str!("../../presets/amp-roger.toml"),
-        walks: true,
+        on: Some(RECIPE),
     },
     Embedded {
         name: "ampco-without-aig",
         text: include_str!("../../presets/ampco-without-aig.toml"),
-        walks: true,
+        on: Some(RECIPE),
     },
     Embedded {
         name: "ampco-without-roger",
         text: include_str!("../../presets/ampco-without-roger.toml"),
-        walks: true,
+        on: Some(RECIPE),
     },
     Embedded {
-        name: "forward",
-        text: include_str!("../../presets/forward.toml"),
-        walks: false,
+        name: "agile",
+        text: AGILE,
+        on: None,
     },
     Embedded {
         name: "robust",
         text: include_str!("../../presets/robust.toml"),
-        walks: false,
+        on: Some(AGILE),
     },
     Embedded {
         name: "smoke",
         text: include_str!("../../presets/smoke.toml"),
-        walks: false,
+        on: None,
     },
 ];
 
 impl Embedded {
     fn config(&self) -> Result<Config> {
         let own = Config::parse(self.text, &format!("preset {}", self.name))?;
-        if !self.walks {
+        let Some(base) = self.on else {
             return Ok(own);
-        }
-        let mut config = Config::parse(RECIPE, "the recipe of the presets")?;
+        };
+        let mut config = Config::parse(base, &format!("what preset {} begins from", self.name))?;
         config.merge(own);
         Ok(config)
     }
