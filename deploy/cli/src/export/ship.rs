@@ -33,9 +33,13 @@ pub(super) fn write(kept: &Kept, folder: &Path) -> Result<Vec<(PathBuf, usize)>>
         .write(kept.iteration, "shipped", &parts)
         .context("writing the policy")?;
     let config = kept.config_path()?;
-    let text = std::fs::read(&config).with_context(|| format!("reading {}", config.display()))?;
-    run::replace_file(&written.join("config.toml"), &text)
-        .with_context(|| format!("writing {}", written.display()))?;
+    let text = std::fs::read_to_string(&config)
+        .with_context(|| format!("reading {}", config.display()))?;
+    run::replace_file(
+        &written.join("config.toml"),
+        without_origin(&text).as_bytes(),
+    )
+    .with_context(|| format!("writing {}", written.display()))?;
     std::fs::rename(&written, folder)
         .with_context(|| format!("moving the policy to {}", folder.display()))?;
     std::fs::remove_dir(&draft).with_context(|| format!("removing {}", draft.display()))?;
@@ -48,11 +52,30 @@ pub(super) fn write(kept: &Kept, folder: &Path) -> Result<Vec<(PathBuf, usize)>>
     Ok(files)
 }
 
+/// A resolved configuration, one key a line, without `run.from`: a folder that nobody else has.
+fn without_origin(text: &str) -> String {
+    let mut section = "";
+    let kept = text.split_inclusive('\n').filter(|line| {
+        if line.starts_with('[') {
+            section = line.trim_end();
+        }
+        !(section == "[run]" && line.starts_with("from = "))
+    });
+    kept.collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::evaluate::subject::Subject;
     use crate::place::Place;
+
+    #[test]
+    fn where_a_run_began_is_not_shipped() {
+        let text = "# Resolved\n[run]\nfrom = \"/a/b\"\nseed = 1\n\n[other]\nfrom = 2\n";
+        let shipped = "# Resolved\n[run]\nseed = 1\n\n[other]\nfrom = 2\n";
+        assert_eq!(without_origin(text), shipped);
+    }
 
     #[test]
     fn a_shipped_policy_opens_like_a_checkpoint_and_ships_again() {
