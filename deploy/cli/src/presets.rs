@@ -86,13 +86,15 @@ const EMBEDDED: [Embedded; 12] = [
 
 impl Embedded {
     fn config(&self) -> Result<Config> {
-        let own = Config::parse(self.text, &format!("preset {}", self.name))?;
-        let Some(base) = self.on else {
-            return Ok(own);
-        };
-        let mut config = Config::parse(base, &format!("what preset {} begins from", self.name))?;
-        config.merge(own);
+        let mut config = self.beneath()?;
+        config.merge(Config::parse(self.text, &format!("preset {}", self.name))?);
         Ok(config)
+    }
+
+    /// What it lies on top of; nothing if that are the defaults alone.
+    fn beneath(&self) -> Result<Config> {
+        let name = format!("what preset {} begins from", self.name);
+        Ok(Config::parse(self.on.unwrap_or_default(), &name)?)
     }
 }
 
@@ -155,6 +157,25 @@ fn run_stem(path: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_preset_holds_only_what_differs_from_what_it_lies_on() {
+        let mut defaults = Config::default();
+        crate::resolve::resolve(&mut defaults).unwrap();
+        // The default is "one per core"; what that comes to is this machine's business.
+        defaults.put("fleet.actors", 0, "the test");
+        for preset in &EMBEDDED {
+            let own = Config::parse(preset.text, "its own").unwrap();
+            let beneath = preset.beneath().unwrap();
+            for (config, below) in [(&own, &beneath), (&beneath, &Config::default())] {
+                for path in config.paths() {
+                    let given = config.given(path);
+                    let before = below.given(path).or_else(|| defaults.given(path));
+                    assert_ne!(given, before, "preset {}: {path}", preset.name);
+                }
+            }
+        }
+    }
 
     #[test]
     fn a_misspelt_preset_is_answered_with_the_closest() {

@@ -136,25 +136,6 @@ mod tests {
     }
 
     #[test]
-    fn a_preset_holds_only_what_differs() {
-        let mut defaults = Config::default();
-        resolve(&mut defaults).unwrap();
-        // The default is "one per core"; what that comes to is this machine's business.
-        defaults.put("fleet.actors", 0, "the test");
-        for name in presets::names() {
-            let config = presets::find(name).unwrap().config;
-            for path in config.paths() {
-                let given = config.given(path);
-                assert_ne!(
-                    given,
-                    defaults.given(path),
-                    "preset {name}: {path} is the default"
-                );
-            }
-        }
-    }
-
-    #[test]
     fn every_section_is_read_strictly() {
         for section in SECTIONS {
             let message = complaint(&format!("[{section}]\nno_such_key = 1"));
