@@ -1,7 +1,7 @@
 //! One linear layer on a block of rows: the product, the bias and the activation in one pass.
 //!
-//! A tile of up to 6 rows and 32 columns is kept in registers while the loop runs along the inputs. The source is
-//! generic over the width of vectors; `pulp` compiles it for AVX-512, AVX2, NEON and plain numbers and enters the best
+//! A tile of up to 6 rows and 32 columns (16 with AVX2) is kept in registers while the loop runs along the inputs. The
+//! source is generic over the width of vectors; `pulp` compiles it for AVX-512, AVX2, NEON and plain numbers and enters the best
 //! that the machine has. All are fused multiply-adds in the order of the inputs, one chain per output, so that they
 //! agree bit by bit, whatever the tile.
 
@@ -9,11 +9,12 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::elu::elu;
 
-/// Columns of a tile: two vectors of AVX-512, four of AVX2.
+/// Columns of a panel of weights.
 pub(crate) const COLUMNS: usize = 32;
 
-/// Rows that the tallest tile takes: with two vectors each they fill 12 of the 32 registers of AVX-512;
-/// with 12 rows the compiler unrolled the loop along the inputs until it ran out of them: 1.8 times slower.
+/// Rows that the tallest tile takes: with two vectors each they fill 12 registers. AVX-512 has 32, but with 12 rows the
+/// compiler unrolled the loop along the inputs until it ran out of them: 1.8 times slower. AVX2 has 16: with four
+/// vectors each and 3 rows one sum lived in memory: 1.9 times slower.
 pub(crate) const TILE_ROWS: usize = 6;
 
 /// What is done with a sum before it is stored.
@@ -49,21 +50,27 @@ impl Product<'_> {
         arch.dispatch(self);
     }
 
-    /// Tiles of `ROWS` rows as far as they go, then smaller ones for the rest; `VECTORS` vectors make 32 columns.
+    /// Tiles of `ROWS` rows as far as they go, then smaller ones for the rest. `VECTORS` vectors are the columns of a
+    /// tile, and `PARTS` of those the 32 of the panel, one after the other: a part's weights stay in the first-level cache.
     #[inline(always)]
-    fn tiles<S: Simd, const ROWS: usize, const VECTORS: usize>(mut self, simd: S) {
-        let mut row = 0;
-        while row + ROWS <= self.count {
-            self.tile::<S, ROWS, VECTORS>(simd, row);
-            row += ROWS;
-        }
-        while ROWS > 4 && row + 4 <= self.count {
-            self.tile::<S, 4, VECTORS>(simd, row);
-            row += 4;
-        }
-        while row < self.count {
-            self.tile::<S, 1, VECTORS>(simd, row);
-            row += 1;
+    fn tiles<S: Simd, const ROWS: usize, const VECTORS: usize, const PARTS: usize>(
+        mut self,
+        simd: S,
+    ) {
+        for part in 0..PARTS {
+            let mut row = 0;
+            while row + ROWS <= self.count {
+                self.tile::<S, ROWS, VECTORS, PARTS>(simd, row, part);
+                row += ROWS;
+            }
+            while ROWS > 4 && row + 4 <= self.count {
+                self.tile::<S, 4, VECTORS, PARTS>(simd, row, part);
+                row += 4;
+            }
+            while row < self.count {
+                self.tile::<S, 1, VECTORS, PARTS>(simd, row, part);
+                row += 1;
+            }
         }
     }
 
@@ -73,7 +80,13 @@ impl Product<'_> {
         reason = "loops of known length over arrays are unrolled and stay in registers; iterators and copies made of calls do not: measured ten times slower"
     )]
     #[inline(always)]
-    fn tile<S: Simd, const ROWS: usize, const VECTORS: usize>(&mut self, simd: S, first: usize) {
+    fn tile<S: Simd, const ROWS: usize, const VECTORS: usize, const PARTS: usize>(
+        &mut self,
+        simd: S,
+        first: usize,
+        part: usize,
+    ) {
+        assert!(part < PARTS, "seen here, it is not asked again in the loop");
         let inputs = self.panel.len();
         let Rows { values, stride } = self.input;
         // Slices of exactly this length let the compiler see that no index below leaves them.
@@ -82,8 +95,9 @@ impl Product<'_> {
             rows[row] = &values[(first + row) * stride..][..inputs];
         }
         let (bias, _) = S::as_simd_f32s(self.bias);
+        let bias = bias.as_chunks::<VECTORS>().0[part];
         let (panel, _) = S::as_simd_f32s(self.panel.as_flattened());
-        let panel = &panel.as_chunks::<VECTORS>().0[..inputs];
+        let panel = &panel.as_chunks::<VECTORS>().0.as_chunks::<PARTS>().0[..inputs];
         let mut sums = [[simd.splat_f32s(0.0); VECTORS]; ROWS];
         for row in 0..ROWS {
             for vector in 0..VECTORS {
@@ -94,7 +108,8 @@ impl Product<'_> {
             for row in 0..ROWS {
                 let x = simd.splat_f32s(rows[row][k]);
                 for vector in 0..VECTORS {
-                    sums[row][vector] = simd.mul_add_f32s(x, panel[k][vector], sums[row][vector]);
+                    sums[row][vector] =
+                        simd.mul_add_f32s(x, panel[k][part][vector], sums[row][vector]);
                 }
             }
         }
@@ -104,13 +119,14 @@ impl Product<'_> {
             done[row] = sums[row];
         }
         for row in 0..ROWS {
-            let output = &mut self.output[(first + row) * self.output_stride..][..COLUMNS];
+            let start = (first + row) * self.output_stride + part * COLUMNS / PARTS;
+            let output = &mut self.output[start..][..COLUMNS / PARTS];
             let (vectors, _) = S::as_mut_simd_f32s(output);
             for vector in 0..VECTORS {
                 vectors[vector] = done[row][vector];
             }
             if self.activation == Activation::Elu {
-                for column in 0..COLUMNS {
+                for column in 0..COLUMNS / PARTS {
                     output[column] = elu(output[column]);
                 }
             }
@@ -123,12 +139,12 @@ impl WithSimd for Product<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        // As many rows as leave a few registers for the weights; the second number times the lanes is COLUMNS.
+        // As many rows as leave a few registers for the weights; lanes times vectors times parts are COLUMNS.
         match S::F32_LANES {
-            16 => self.tiles::<S, TILE_ROWS, 2>(simd),
-            8 => self.tiles::<S, 3, 4>(simd),
-            4 => self.tiles::<S, 3, 8>(simd),
-            _ => self.tiles::<S, 1, COLUMNS>(simd),
+            16 => self.tiles::<S, TILE_ROWS, 2, 1>(simd),
+            8 => self.tiles::<S, TILE_ROWS, 2, 2>(simd),
+            4 => self.tiles::<S, 3, 8, 1>(simd),
+            _ => self.tiles::<S, 1, COLUMNS, 1>(simd),
         }
     }
 }
