@@ -122,6 +122,9 @@ impl Environment {
         if count_down(&mut self.push_in) {
             let push = setting.randomization.draw_push(&mut self.random);
             bodies.push(index, push);
+            if let Some(rule) = &setting.task.stray {
+                self.astray.pushed(rule);
+            }
             self.push_in = setting.randomization.draw_push_interval(&mut self.random);
         }
         bodies.set_targets(index, &actuator::targets(action));
