@@ -61,6 +61,19 @@ pub struct RandomizationConfig {
     pub joint_velocity_range: [f32; 2],
 }
 
+/// The rows of Table I by the keys that switch them, in the table's order.
+pub const ROWS: [&str; 9] = [
+    "mass_variation",
+    "friction",
+    "com_offset",
+    "impulse",
+    "linear_velocity_noise",
+    "angular_velocity_noise",
+    "gravity_noise",
+    "joint_position_noise",
+    "joint_velocity_noise",
+];
+
 impl Default for RandomizationConfig {
     fn default() -> Self {
         Self {
@@ -104,6 +117,27 @@ impl RandomizationConfig {
             joint_velocity_noise: false,
             ..Self::default()
         }
+    }
+
+    /// Only these rows on, by their keys in [`ROWS`]; none where there is no such row.
+    pub fn only<'a>(rows: impl IntoIterator<Item = &'a str>) -> Option<Self> {
+        let mut only = Self::none();
+        for row in rows {
+            let switch = match row {
+                "mass_variation" => &mut only.mass_variation,
+                "friction" => &mut only.friction,
+                "com_offset" => &mut only.com_offset,
+                "impulse" => &mut only.impulse,
+                "linear_velocity_noise" => &mut only.linear_velocity_noise,
+                "angular_velocity_noise" => &mut only.angular_velocity_noise,
+                "gravity_noise" => &mut only.gravity_noise,
+                "joint_position_noise" => &mut only.joint_position_noise,
+                "joint_velocity_noise" => &mut only.joint_velocity_noise,
+                _ => return None,
+            };
+            *switch = true;
+        }
+        Some(only)
     }
 
     /// Checks every field; names the first bad one, its value and a remedy.

@@ -175,7 +175,7 @@ mod tests {
                 ..StrayConfig::default()
             };
             let (mut astray, standing) = (Astray::at_start(true), RobotState::standing());
-            let mut step = |astray: &mut Astray| astray.step(&rule, &[1.0, 0.0, 0.0], &standing);
+            let step = |astray: &mut Astray| astray.step(&rule, &[1.0, 0.0, 0.0], &standing);
             assert!((0..60).all(|_| !step(&mut astray)));
             astray.pushed(&rule);
             (1..).find(|_| step(&mut astray))

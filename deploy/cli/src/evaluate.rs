@@ -21,7 +21,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
+use clap::builder::PossibleValuesParser;
 use serde_json::Value;
+use sim::randomization::ROWS;
 
 use crate::console::Console;
 use crate::engine::Engine;
@@ -79,6 +81,10 @@ pub(crate) struct Evaluate {
     /// Apply every row of the paper's domain randomisation (Table I)
     #[arg(long)]
     randomize: bool,
+    /// Apply only this row of Table I, as the configuration names it; may be repeated. Tells which of
+    /// them a robot cannot bear
+    #[arg(long = "row", value_name = "ROW", conflicts_with_all = ["randomize", "suite"], value_parser = PossibleValuesParser::new(ROWS))]
+    rows: Vec<String>,
     /// Begin in frames of the reference motion nearest to the command instead of standing
     #[arg(long)]
     from_reference: bool,
@@ -180,9 +186,14 @@ impl Evaluate {
             [] => &DEFAULT_COMMANDS,
             given => given,
         };
+        let rows = if self.randomize {
+            ROWS.map(str::to_owned).to_vec()
+        } else {
+            self.rows.clone()
+        };
         let scenario = |&Command(command): &Command| Scenario {
             from_reference: self.from_reference,
-            randomize: self.randomize,
+            rows: rows.clone(),
             ..Scenario::holding(command.map(|x| x.to_string()).join(","), command)
         };
         commands.iter().map(scenario).collect()

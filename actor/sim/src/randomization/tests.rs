@@ -198,3 +198,24 @@ fn the_table_grows_with_the_samples() {
     let error = backward.validate().unwrap_err().to_string();
     assert!(error.contains("from_samples"), "{error}");
 }
+
+#[test]
+fn every_row_can_be_alone() {
+    for row in ROWS {
+        let only = RandomizationConfig::only([row]).unwrap();
+        let switched = toml::Table::try_from(&only).unwrap();
+        let on =
+            |(key, value): (String, toml::Value)| (value.as_bool() == Some(true)).then_some(key);
+        let on: Vec<String> = switched.into_iter().filter_map(on).collect();
+        assert_eq!(on, [row]);
+    }
+    assert_eq!(
+        RandomizationConfig::only([]),
+        Some(RandomizationConfig::none())
+    );
+    assert_eq!(
+        RandomizationConfig::only(ROWS),
+        Some(RandomizationConfig::default())
+    );
+    assert_eq!(RandomizationConfig::only(["push"]), None);
+}

@@ -1,6 +1,6 @@
 //! Episodes of one scenario: robots go until they fall or the time is over, and are measured.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use g1::gait::CONTACT_FORCE;
 use g1::joints::{LEFT_LEG, RIGHT_LEG};
 use g1::{ACTION, FEATURES, JOINTS};
@@ -144,11 +144,8 @@ impl<'a> Walker<'a> {
             (Starts::default(), 0.0)
         };
         task.start.reference_share = share;
-        let randomization = if scenario.randomize {
-            RandomizationConfig::default()
-        } else {
-            RandomizationConfig::none()
-        };
+        let rows = scenario.rows.iter().map(String::as_str);
+        let randomization = RandomizationConfig::only(rows).context("Table I has no such row")?;
         // Robots of one unit differ by their index; units differ by their seed.
         let seed = conditions.seed.wrapping_add((unit.first as u64) << 32);
         Ok(Fleet::new(

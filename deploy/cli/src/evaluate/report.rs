@@ -37,7 +37,7 @@ pub(super) struct Row {
     command: [f32; 3],
     /// Held one after another for equal parts of the episode.
     commands: Vec<[f32; 3]>,
-    condition: &'static str,
+    condition: String,
     from_reference: bool,
     randomize: bool,
     push: Option<f32>,
@@ -65,7 +65,7 @@ impl Report {
                 commands: scenario.commands.clone(),
                 condition: scenario.condition(),
                 from_reference: scenario.from_reference,
-                randomize: scenario.randomize,
+                randomize: !scenario.rows.is_empty(),
                 push: scenario.push,
                 reference: single.then(|| subject.reference.nearest(command)).flatten(),
                 outcome: tally.outcome(),
@@ -138,7 +138,7 @@ impl Report {
             let (section, others) = rest.split_at(same);
             text.push_str(&format!(
                 "\n## {}\n\n{}\n",
-                capitalised(first.condition),
+                capitalised(&first.condition),
                 table::markdown(section)
             ));
             rest = others;
@@ -163,11 +163,11 @@ mod tests {
     use super::*;
 
     fn report() -> Report {
-        let row = |name: &str, condition| Row {
+        let row = |name: &str, condition: &str| Row {
             name: name.to_owned(),
             command: [0.5, 0.0, 0.0],
             commands: vec![[0.5, 0.0, 0.0]],
-            condition,
+            condition: condition.to_owned(),
             from_reference: false,
             randomize: false,
             push: None,

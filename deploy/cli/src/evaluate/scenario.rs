@@ -5,6 +5,7 @@
 use std::f32::consts::TAU;
 
 use g1::COMMAND;
+use sim::randomization::ROWS;
 
 /// One thing that robots are tried at.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,8 +16,8 @@ pub(super) struct Scenario {
     pub(super) commands: Vec<[f32; COMMAND]>,
     /// Begin in frames of the reference motion instead of standing.
     pub(super) from_reference: bool,
-    /// All rows of Table I.
-    pub(super) randomize: bool,
+    /// Rows of Table I that vary robots, by their keys.
+    pub(super) rows: Vec<String>,
     /// Size of the pushes, m/s.
     pub(super) push: Option<f32>,
 }
@@ -31,7 +32,7 @@ impl Scenario {
             name: name.into(),
             commands: vec![command],
             from_reference: false,
-            randomize: false,
+            rows: Vec::new(),
             push: None,
         }
     }
@@ -60,13 +61,19 @@ impl Scenario {
     }
 
     /// The condition that it is tried under, in words.
-    pub(super) fn condition(&self) -> &'static str {
-        match (self.from_reference, self.randomize, self.push.is_some()) {
-            (_, _, true) => "pushed",
-            (false, false, _) => "from standing",
-            (true, false, _) => "from reference frames",
-            (false, true, _) => "from standing, Table I",
-            (true, true, _) => "from reference frames, Table I",
+    pub(super) fn condition(&self) -> String {
+        if self.push.is_some() {
+            return "pushed".to_owned();
+        }
+        let start = if self.from_reference {
+            "from reference frames"
+        } else {
+            "from standing"
+        };
+        match self.rows.len() {
+            0 => start.to_owned(),
+            count if count == ROWS.len() => format!("{start}, Table I"),
+            _ => format!("{start}, {} of Table I", self.rows.join(" and ")),
         }
     }
 }
@@ -111,17 +118,18 @@ pub(super) fn standard() -> Vec<Scenario> {
         ),
     ];
     let mut suite = Vec::new();
-    for randomize in [false, true] {
+    let all = ROWS.map(str::to_owned).to_vec();
+    for rows in [Vec::new(), all] {
         for from_reference in [false, true] {
             let under = |name: &str, commands: Vec<[f32; COMMAND]>| Scenario {
                 name: format!(
                     "{name}{}{}",
                     if from_reference { "-reference" } else { "" },
-                    if randomize { "-table-1" } else { "" }
+                    if rows.is_empty() { "" } else { "-table-1" }
                 ),
                 commands,
                 from_reference,
-                randomize,
+                rows: rows.clone(),
                 push: None,
             };
             suite.extend(held.map(|(name, command)| under(name, vec![command])));
@@ -179,6 +187,24 @@ mod tests {
         assert_eq!(
             Scenario::holding("x", [0.0; 3]).push(200, steps, 0, 4),
             None
+        );
+    }
+
+    #[test]
+    fn a_condition_says_which_rows_of_table_1() {
+        let under = |rows: &[&str]| {
+            let rows = rows.iter().map(ToString::to_string).collect();
+            let scenario = Scenario {
+                rows,
+                ..Scenario::holding("x", [0.0; 3])
+            };
+            scenario.condition()
+        };
+        assert_eq!(under(&[]), "from standing");
+        assert_eq!(under(&ROWS), "from standing, Table I");
+        assert_eq!(
+            under(&["impulse", "friction"]),
+            "from standing, impulse and friction of Table I"
         );
     }
 
