@@ -3,71 +3,22 @@
 //! Separate because the layout of the slices is a contract with rollouts; what happens to one robot
 //! is told in `env`.
 
+mod out;
+mod saved;
+
+pub use out::StepOut;
+
 use crate::actuator::Gains;
-use crate::config::{self, Invalid};
+use crate::config;
 use crate::env::{Environment, Setting};
+use crate::error::SimError;
 use crate::kind::Pools;
-use crate::physics::{Bodies, Exertion, Physics, SavedBodies};
+use crate::physics::{Bodies, Exertion};
 use crate::randomization::RandomizationConfig;
 use crate::start::Starts;
 use crate::task::{End, TaskConfig};
 use g1::{ACTION, FEATURES, OBSERVATION, RobotState, observation};
 use nalgebra::Vector3;
-use serde::{Deserialize, Serialize};
-
-/// Why a fleet cannot be built or restored.
-#[derive(Debug, thiserror::Error)]
-pub enum SimError {
-    /// A configuration value is not usable.
-    #[error(transparent)]
-    Invalid(#[from] Invalid),
-    /// The bytes are no snapshot of a fleet of this build.
-    #[error("a fleet snapshot of {bytes} bytes cannot be read")]
-    Snapshot {
-        /// Length of what was given.
-        bytes: usize,
-        /// What the decoder met.
-        #[source]
-        source: bincode::error::DecodeError,
-    },
-    /// The snapshot is of another number of environments.
-    #[error("the snapshot holds {found} environments, this fleet has {expected}")]
-    Count {
-        /// Environments in the snapshot.
-        found: usize,
-        /// Environments of this fleet.
-        expected: usize,
-    },
-    /// The snapshot is of the other physics engine.
-    #[error(
-        "the snapshot is not of this fleet's physics, {expected:?}; continue it with the task.physics that it began with"
-    )]
-    Engine {
-        /// Engine of this fleet.
-        expected: Physics,
-    },
-}
-
-/// Where one step of the fleet is written: every slice holds a row per environment.
-pub struct StepOut<'a> {
-    /// Task reward rᴳ (Eq. 14), N.
-    pub task_rewards: &'a mut [f32],
-    /// Positive mechanical work of the motors in this step, J, N.
-    pub energies: &'a mut [f32],
-    /// Squared velocity error ‖v* − v‖², m²/s², N.
-    pub tracking_errors: &'a mut [f32],
-    /// 0 running, 1 fall, 2 time-out, N.
-    pub ends: &'a mut [f32],
-    /// Steps done in the episode, this one included, N.
-    pub episode_steps: &'a mut [f32],
-    /// Features of o_{t+1}, N·53; of a finished episode its own last.
-    pub next_features: &'a mut [f32],
-    /// Vertical force on left and right sole, mean over the step, N (newtons), N·2.
-    pub foot_forces: &'a mut [f32],
-    /// The last policy observation of episodes that timed out on this step, N·82; other rows are
-    /// left alone.
-    pub timeout_observations: &'a mut [f32],
-}
 
 /// Environments stepped together. Same seed, same bits: an environment's future depends on the
 /// seed, its index and its actions only.
@@ -93,16 +44,6 @@ pub struct LastStep {
     pub state: RobotState,
     /// What the step took; zeros before the first step.
     pub exertion: Exertion,
-}
-
-/// What a snapshot holds: all that a continuation depends on, configuration aside.
-#[derive(Serialize, Deserialize)]
-struct Snapshot<E, F> {
-    bodies: SavedBodies,
-    environments: E,
-    observations: F,
-    features: F,
-    faults: u64,
 }
 
 impl Fleet {
@@ -316,47 +257,6 @@ impl Fleet {
         }
     }
 
-    /// Everything that the future depends on, configuration aside.
-    pub fn save(&self) -> Vec<u8> {
-        let snapshot = Snapshot {
-            bodies: self.bodies.save(),
-            environments: &self.environments,
-            observations: &self.observations,
-            features: &self.features,
-            faults: self.faults,
-        };
-        bincode::serde::encode_to_vec(&snapshot, bincode::config::standard())
-            .expect("every part of a fleet can be written to memory")
-    }
-
-    /// Continues, bit by bit, where [`Fleet::save`] was called on a fleet of the same configuration.
-    /// On an error the fleet stays as it was.
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), SimError> {
-        let decoded = bincode::serde::decode_from_slice(bytes, bincode::config::standard());
-        let (snapshot, _): (Snapshot<Vec<Environment>, Vec<f32>>, usize) =
-            decoded.map_err(|source| SimError::Snapshot {
-                bytes: bytes.len(),
-                source,
-            })?;
-        let (found, expected) = (snapshot.environments.len(), self.len());
-        let whole = snapshot.observations.len() == found * OBSERVATION
-            && snapshot.features.len() == found * FEATURES;
-        if found != expected || !whole {
-            return Err(SimError::Count { found, expected });
-        }
-        if !self.bodies.restore(snapshot.bodies) {
-            return Err(SimError::Engine {
-                expected: self.setting.task.physics,
-            });
-        }
-        self.environments = snapshot.environments;
-        self.observations = snapshot.observations;
-        self.features = snapshot.features;
-        self.faults = snapshot.faults;
-        self.forget_last_steps();
-        Ok(())
-    }
-
     fn forget_last_steps(&mut self) {
         let of = |environment: &Environment| (*environment.state(), false);
         self.last = self.environments.iter().map(of).collect();
@@ -373,27 +273,6 @@ impl Fleet {
             environment.state(),
             &mut self.features[i * FEATURES..][..FEATURES],
         );
-    }
-}
-
-impl StepOut<'_> {
-    fn check(&self, n: usize) {
-        for (name, length, expected) in [
-            ("task_rewards", self.task_rewards.len(), n),
-            ("energies", self.energies.len(), n),
-            ("tracking_errors", self.tracking_errors.len(), n),
-            ("ends", self.ends.len(), n),
-            ("episode_steps", self.episode_steps.len(), n),
-            ("next_features", self.next_features.len(), n * FEATURES),
-            ("foot_forces", self.foot_forces.len(), n * 2),
-            (
-                "timeout_observations",
-                self.timeout_observations.len(),
-                n * OBSERVATION,
-            ),
-        ] {
-            assert_eq!(length, expected, "length of {name} for {n} environments");
-        }
     }
 }
 

@@ -6,6 +6,7 @@
 mod episodes;
 pub(crate) mod judge;
 mod pictures;
+mod progress;
 mod reference;
 mod report;
 mod scenario;
@@ -17,8 +18,7 @@ mod tally;
 use std::io::Write;
 use std::path::PathBuf;
 use std::str::FromStr;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use anyhow::{Context, Result};
 use clap::builder::PossibleValuesParser;
@@ -28,9 +28,9 @@ use sim::randomization::ROWS;
 use crate::console::Console;
 use crate::engine::Engine;
 use crate::failure::usage;
-use crate::figures::clock;
 use crate::place::Place;
 use episodes::{Conditions, Unit, Walker};
+use progress::Progress;
 use report::Report;
 use scenario::Scenario;
 use subject::{Kept, Subject};
@@ -273,66 +273,6 @@ impl Evaluate {
     }
 }
 
-/// How far all threads together have come.
-struct Progress {
-    started: Instant,
-    /// Steps of robots, those of episodes that ended early included.
-    done: AtomicU64,
-    all: u64,
-    steps: u32,
-}
-
-/// How far a unit has come; the steps that a unit need not do count when it ends.
-struct UnitProgress<'a> {
-    progress: &'a Progress,
-    left: AtomicU64,
-}
-
-impl Progress {
-    fn new(episodes: impl Iterator<Item = usize>, conditions: &Conditions) -> Self {
-        Self {
-            started: Instant::now(),
-            done: AtomicU64::new(0),
-            all: episodes.sum::<usize>() as u64 * u64::from(conditions.steps),
-            steps: conditions.steps,
-        }
-    }
-
-    fn of_unit(&self, episodes: usize) -> UnitProgress<'_> {
-        UnitProgress {
-            progress: self,
-            left: AtomicU64::new(episodes as u64 * u64::from(self.steps)),
-        }
-    }
-
-    fn line(&self) -> String {
-        let share = self.done.load(Ordering::Relaxed) as f64 / self.all as f64;
-        let gone = self.started.elapsed();
-        let mut line = format!("evaluating · {:.0} %", 100.0 * share);
-        if share > 0.0 && gone > Duration::from_secs(1) {
-            let left = gone.mul_f64((1.0 - share) / share);
-            line.push_str(&format!(" · {} left", clock(left)));
-        }
-        line
-    }
-}
-
-impl UnitProgress<'_> {
-    fn step(&self, robots: usize) {
-        self.left.fetch_sub(robots as u64, Ordering::Relaxed);
-        self.progress
-            .done
-            .fetch_add(robots as u64, Ordering::Relaxed);
-    }
-}
-
-impl Drop for UnitProgress<'_> {
-    fn drop(&mut self) {
-        let left = self.left.load(Ordering::Relaxed);
-        self.progress.done.fetch_add(left, Ordering::Relaxed);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -343,21 +283,5 @@ mod tests {
         for text in ["", "0.8", "0.8,0", "0.8,0,0,0", "a,b,c", "inf,0,0"] {
             assert!(text.parse::<Command>().is_err(), "{text:?}");
         }
-    }
-
-    #[test]
-    fn episodes_that_end_early_count_as_done() {
-        let conditions = Conditions {
-            steps: 100,
-            episodes: 4,
-            seed: 1,
-            traced: false,
-        };
-        let progress = Progress::new([2, 2].into_iter(), &conditions);
-        let unit = progress.of_unit(2);
-        unit.step(2);
-        assert!(progress.line().contains("0 %")); // 2 of 400
-        drop(unit);
-        assert!(progress.line().contains("50 %"), "{}", progress.line());
     }
 }

@@ -3,6 +3,7 @@
 use super::*;
 use crate::command::CommandConfig;
 use crate::model::Variation;
+use crate::physics::Physics;
 use crate::rows::StepRows;
 use crate::start::StartConfig;
 use g1::JOINTS;

@@ -1,0 +1,37 @@
+//! Why a fleet cannot be built or restored.
+
+use crate::config::Invalid;
+use crate::physics::Physics;
+
+/// Why a fleet cannot be built or restored.
+#[derive(Debug, thiserror::Error)]
+pub enum SimError {
+    /// A configuration value is not usable.
+    #[error(transparent)]
+    Invalid(#[from] Invalid),
+    /// The bytes are no snapshot of a fleet of this build.
+    #[error("a fleet snapshot of {bytes} bytes cannot be read")]
+    Snapshot {
+        /// Length of what was given.
+        bytes: usize,
+        /// What the decoder met.
+        #[source]
+        source: bincode::error::DecodeError,
+    },
+    /// The snapshot is of another number of environments.
+    #[error("the snapshot holds {found} environments, this fleet has {expected}")]
+    Count {
+        /// Environments in the snapshot.
+        found: usize,
+        /// Environments of this fleet.
+        expected: usize,
+    },
+    /// The snapshot is of the other physics engine.
+    #[error(
+        "the snapshot is not of this fleet's physics, {expected:?}; continue it with the task.physics that it began with"
+    )]
+    Engine {
+        /// Engine of this fleet.
+        expected: Physics,
+    },
+}

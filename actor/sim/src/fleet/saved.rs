@@ -1,0 +1,61 @@
+//! A fleet saved and restored, bit by bit.
+
+use super::Fleet;
+use crate::env::Environment;
+use crate::error::SimError;
+use crate::physics::SavedBodies;
+use g1::{FEATURES, OBSERVATION};
+use serde::{Deserialize, Serialize};
+
+/// What a snapshot holds: all that a continuation depends on, configuration aside.
+#[derive(Serialize, Deserialize)]
+struct Snapshot<E, F> {
+    bodies: SavedBodies,
+    environments: E,
+    observations: F,
+    features: F,
+    faults: u64,
+}
+
+impl Fleet {
+    /// Everything that the future depends on, configuration aside.
+    pub fn save(&self) -> Vec<u8> {
+        let snapshot = Snapshot {
+            bodies: self.bodies.save(),
+            environments: &self.environments,
+            observations: &self.observations,
+            features: &self.features,
+            faults: self.faults,
+        };
+        bincode::serde::encode_to_vec(&snapshot, bincode::config::standard())
+            .expect("every part of a fleet can be written to memory")
+    }
+
+    /// Continues, bit by bit, where [`Fleet::save`] was called on a fleet of the same configuration.
+    /// On an error the fleet stays as it was.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), SimError> {
+        let decoded = bincode::serde::decode_from_slice(bytes, bincode::config::standard());
+        let (snapshot, _): (Snapshot<Vec<Environment>, Vec<f32>>, usize) =
+            decoded.map_err(|source| SimError::Snapshot {
+                bytes: bytes.len(),
+                source,
+            })?;
+        let (found, expected) = (snapshot.environments.len(), self.len());
+        let whole = snapshot.observations.len() == found * OBSERVATION
+            && snapshot.features.len() == found * FEATURES;
+        if found != expected || !whole {
+            return Err(SimError::Count { found, expected });
+        }
+        if !self.bodies.restore(snapshot.bodies) {
+            return Err(SimError::Engine {
+                expected: self.setting.task.physics,
+            });
+        }
+        self.environments = snapshot.environments;
+        self.observations = snapshot.observations;
+        self.features = snapshot.features;
+        self.faults = snapshot.faults;
+        self.forget_last_steps();
+        Ok(())
+    }
+}

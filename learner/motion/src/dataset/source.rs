@@ -1,0 +1,77 @@
+//! Where clips come from: the built-in gait, a file, or a folder of files.
+
+use crate::clip::Clip;
+use crate::config::{ClipConfig, Gait, wrong};
+use crate::error::MotionError;
+use crate::{gait, import};
+use std::path::{Path, PathBuf};
+
+/// The clips of a source; those of a folder share its weight by their duration.
+pub(super) fn load_clips(
+    source: &ClipConfig,
+    index: usize,
+    base_dir: &Path,
+) -> Result<Vec<Clip>, MotionError> {
+    let options = import::Options {
+        fps: source.fps,
+        quaternion: source.quaternion,
+        ground: source.ground.unwrap_or(true),
+        ..import::Options::default()
+    };
+    let mut clips = match (source.gait, &source.file, &source.folder) {
+        (Some(gait), ..) => {
+            let velocity = source.velocity();
+            let made = match gait {
+                Gait::Stand => Some(gait::stand()),
+                Gait::Walk => gait::walk(velocity),
+                Gait::Run => gait::run(velocity),
+                Gait::Start => gait::start(velocity),
+                Gait::Stop => gait::stop(velocity),
+            };
+            let impossible =
+                "no pose of the legs makes this gait; lower lateral, yaw_rate or speed";
+            vec![made.ok_or_else(|| wrong(format!("clips[{index}]"), velocity, impossible))?]
+        }
+        (None, Some(file), _) => vec![import::load(&base_dir.join(file), &options)?],
+        (None, None, Some(folder)) => tables(&base_dir.join(folder))?
+            .iter()
+            .map(|path| import::load(path, &options))
+            .collect::<Result<_, _>>()?,
+        (None, None, None) => {
+            return Err(wrong(
+                format!("clips[{index}]"),
+                "{}",
+                "give gait, file or folder",
+            ));
+        }
+    };
+    let seconds: f64 = clips.iter().map(Clip::seconds).sum();
+    for clip in &mut clips {
+        clip.weight = source.weight * (clip.seconds() / seconds) as f32;
+    }
+    Ok(clips)
+}
+
+/// The tables in a folder, sorted by name: the order must not depend on the file system.
+fn tables(folder: &Path) -> Result<Vec<PathBuf>, MotionError> {
+    let read = |source| MotionError::Read {
+        path: folder.into(),
+        source,
+    };
+    let mut paths = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(read)? {
+        let path = entry.map_err(read)?.path();
+        if path.extension().is_some_and(|extension| extension == "csv") {
+            paths.push(path);
+        }
+    }
+    if paths.is_empty() {
+        return Err(MotionError::File {
+            path: folder.into(),
+            problem: "holds no .csv file".into(),
+            remedy: "fill it with ampco motions import FILE… --out FOLDER".into(),
+        });
+    }
+    paths.sort();
+    Ok(paths)
+}
