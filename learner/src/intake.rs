@@ -4,13 +4,12 @@ use std::time::{Duration, Instant};
 
 use amp::Batch;
 use anyhow::{Result, bail};
-use protocol::{
-    Entry, Ledger, Rollout, RolloutHeader, RolloutLayout, RolloutSubscriber, Shutdown, TICK,
-};
+use protocol::{Entry, Ledger, Rollout, RolloutLayout, RolloutSubscriber, Shutdown, TICK};
 use run::Folder;
 use run::journal::{self, Journal};
 use tracing::{info, warn};
 
+use crate::gathering::{Gathered, Gathering, Seat, copy};
 use crate::roster::Roster;
 
 /// How rollouts are asked for.
@@ -24,23 +23,6 @@ pub(crate) struct Terms {
     pub(crate) patience: Duration,
     /// Sizes of every rollout.
     pub(crate) layout: RolloutLayout,
-}
-
-/// What came together for one iteration. Seconds are means over the rollouts, but for `collect`,
-/// which is the slowest's.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Gathered {
-    pub(crate) rollouts: usize,
-    pub(crate) actors: usize,
-    /// Mean age of the weights that acted, in versions.
-    pub(crate) policy_lag: f64,
-    pub(crate) collect_seconds: f64,
-    pub(crate) physics_seconds: f64,
-    pub(crate) observation_seconds: f64,
-    pub(crate) inference_seconds: f64,
-    pub(crate) waiting_seconds: f64,
-    /// Copying rollouts to their places, all together.
-    pub(crate) copy_seconds: f64,
 }
 
 /// Waits for rollouts, checks them, copies them to their places.
@@ -63,14 +45,6 @@ pub(crate) struct Unused {
     pub(crate) surplus: u64,
     /// A number in them was none.
     pub(crate) unusable: u64,
-}
-
-/// What has come together so far.
-struct Gathering<'a> {
-    version: u64,
-    batch: &'a mut Batch,
-    seats: Vec<Seat>,
-    gathered: Gathered,
 }
 
 impl Intake {
@@ -331,54 +305,4 @@ impl Intake {
             }
         }
     }
-}
-
-/// A place in the batch.
-#[derive(Clone, Copy, Debug)]
-struct Seat {
-    /// Whose it is; `None` is anybody's.
-    actor: Option<u32>,
-    taken: bool,
-}
-
-impl Gathered {
-    fn count(&mut self, header: &RolloutHeader, version: u64) {
-        self.rollouts += 1;
-        self.policy_lag += version.saturating_sub(header.policy_version) as f64;
-        self.collect_seconds = self.collect_seconds.max(f64::from(header.collect_seconds));
-        self.physics_seconds += f64::from(header.physics_seconds);
-        self.observation_seconds += f64::from(header.observation_seconds);
-        self.inference_seconds += f64::from(header.inference_seconds);
-        self.waiting_seconds += f64::from(header.waiting_seconds);
-    }
-
-    fn average(&mut self) {
-        let rollouts = self.rollouts.max(1) as f64;
-        self.policy_lag /= rollouts;
-        self.physics_seconds /= rollouts;
-        self.observation_seconds /= rollouts;
-        self.inference_seconds /= rollouts;
-        self.waiting_seconds /= rollouts;
-    }
-}
-
-/// The one copy: every block of the rollout to its segment's rows.
-fn copy(rollout: &Rollout, batch: &mut Batch, segment: usize) {
-    let from = rollout.view();
-    let to = batch.segment_mut(segment);
-    to.observations.copy_from_slice(from.observations);
-    to.actions.copy_from_slice(from.actions);
-    to.means.copy_from_slice(from.means);
-    to.log_probs.copy_from_slice(from.log_probs);
-    to.task_rewards.copy_from_slice(from.task_rewards);
-    to.energies.copy_from_slice(from.energies);
-    to.tracking_errors.copy_from_slice(from.tracking_errors);
-    to.ends.copy_from_slice(from.ends);
-    to.episode_steps.copy_from_slice(from.episode_steps);
-    to.features.copy_from_slice(from.features);
-    to.next_features.copy_from_slice(from.next_features);
-    to.foot_forces.copy_from_slice(from.foot_forces);
-    to.last_observations.copy_from_slice(from.last_observations);
-    to.timeout_observations
-        .copy_from_slice(from.timeout_observations);
 }

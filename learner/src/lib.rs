@@ -9,6 +9,7 @@
 mod config;
 mod cores;
 mod gait;
+mod gathering;
 mod guidance;
 mod intake;
 mod lines;

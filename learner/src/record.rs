@@ -9,8 +9,9 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use crate::gait::Measures;
+use crate::gathering::Gathered;
 use crate::guidance::Guide;
-use crate::intake::{Gathered, Unused};
+use crate::intake::Unused;
 
 /// One iteration.
 #[derive(Serialize)]

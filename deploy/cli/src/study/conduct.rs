@@ -1,12 +1,14 @@
 //! The runs of a study, one process group after another or several at once, to the end or until it is stopped.
 
+mod telling;
+
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use ::study::StudyFile;
 use ::study::outlook::Progress;
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result};
 use run::metrics::{self, Tail};
 use rustix::process::Signal;
 use tokio::process::Child;
@@ -14,10 +16,9 @@ use tokio::time::{MissedTickBehavior, interval};
 
 use super::folder::StudyFolder;
 use super::group::{self, Standing};
-use super::line::{Going, Stand};
 use super::plan::Planned;
 use crate::console::Console;
-use crate::figures::{Figures, Pace, count};
+use crate::figures::{Figures, Pace};
 use crate::supervise::Stop;
 
 /// Between two looks.
@@ -288,84 +289,6 @@ impl<'a> Conductor<'a> {
             .say(&format!("{name} failed and the others go on: {words}"));
         self.failures.push(name.clone());
         self.folder.note(name, Some(words))
-    }
-
-    fn stand(&self) -> Stand {
-        let going = |job: &Job| {
-            let (name, of) = (&self.planned[job.run].name, self.planned[job.run].target);
-            let (iteration, rate) = match &job.task {
-                Task::Training { pace, .. } => {
-                    let rate = pace
-                        .newest
-                        .as_ref()
-                        .and_then(|f| f.timing.samples_per_second);
-                    (Some((self.progress[job.run].done, of)), rate)
-                }
-                Task::Judging { .. } => (None, None),
-            };
-            Going {
-                name: name.clone(),
-                iteration,
-                samples_per_second: rate,
-            }
-        };
-        Stand {
-            runs: self.progress.clone(),
-            failed: self.failures.len(),
-            going: self.jobs.iter().map(going).collect(),
-            parallel: self.parallel,
-        }
-    }
-
-    /// The last words; a failure if a run failed.
-    fn close(&mut self) -> Result<()> {
-        let path = self.folder.path().display();
-        let done = self
-            .progress
-            .iter()
-            .filter(|run| run.done >= run.of)
-            .count();
-        let all = self.progress.len();
-        if self.stopping {
-            let message =
-                format!("stopped: {done} of {all} runs are done; the same command goes on");
-            self.console.say(&message);
-            return Ok(());
-        }
-        if self.failures.is_empty() {
-            self.measure_overhead()?;
-        }
-        let message = format!(
-            "{done} of {} done in {path}; `ampco study report` of that folder writes the report",
-            count(all, "run")
-        );
-        self.console.say(&message);
-        if self.failures.is_empty() {
-            return Ok(());
-        }
-        Err(anyhow!(
-            "{} of {all} runs failed: {}; see {path}/logs, and give the same command to try them again",
-            self.failures.len(),
-            self.failures.join(", ")
-        ))
-    }
-
-    /// Times the scheduler alone, now that the machine is free.
-    fn measure_overhead(&mut self) -> Result<()> {
-        let here = std::env::current_exe().context("finding this program's own path")?;
-        let output = std::process::Command::new(here)
-            .args(["bench", "scheduler"])
-            .output()
-            .context("timing the scheduler")?;
-        let said = String::from_utf8_lossy(&output.stdout);
-        match said.lines().last().filter(|_| output.status.success()) {
-            Some(figures) => self.folder.write("overhead.json", &format!("{figures}\n")),
-            None => {
-                self.console
-                    .say("the scheduler could not be timed alone; the report will not have it");
-                Ok(())
-            }
-        }
     }
 }
 

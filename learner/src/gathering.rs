@@ -1,0 +1,79 @@
+//! What comes together for one iteration: seats in the batch, and who fills them.
+
+use amp::Batch;
+use protocol::{Rollout, RolloutHeader};
+
+/// What came together for one iteration. Seconds are means over the rollouts, but for `collect`,
+/// which is the slowest's.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Gathered {
+    pub(crate) rollouts: usize,
+    pub(crate) actors: usize,
+    /// Mean age of the weights that acted, in versions.
+    pub(crate) policy_lag: f64,
+    pub(crate) collect_seconds: f64,
+    pub(crate) physics_seconds: f64,
+    pub(crate) observation_seconds: f64,
+    pub(crate) inference_seconds: f64,
+    pub(crate) waiting_seconds: f64,
+    /// Copying rollouts to their places, all together.
+    pub(crate) copy_seconds: f64,
+}
+
+/// What has come together so far.
+pub(crate) struct Gathering<'a> {
+    pub(crate) version: u64,
+    pub(crate) batch: &'a mut Batch,
+    pub(crate) seats: Vec<Seat>,
+    pub(crate) gathered: Gathered,
+}
+
+/// A place in the batch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seat {
+    /// Whose it is; `None` is anybody's.
+    pub(crate) actor: Option<u32>,
+    pub(crate) taken: bool,
+}
+
+impl Gathered {
+    pub(crate) fn count(&mut self, header: &RolloutHeader, version: u64) {
+        self.rollouts += 1;
+        self.policy_lag += version.saturating_sub(header.policy_version) as f64;
+        self.collect_seconds = self.collect_seconds.max(f64::from(header.collect_seconds));
+        self.physics_seconds += f64::from(header.physics_seconds);
+        self.observation_seconds += f64::from(header.observation_seconds);
+        self.inference_seconds += f64::from(header.inference_seconds);
+        self.waiting_seconds += f64::from(header.waiting_seconds);
+    }
+
+    pub(crate) fn average(&mut self) {
+        let rollouts = self.rollouts.max(1) as f64;
+        self.policy_lag /= rollouts;
+        self.physics_seconds /= rollouts;
+        self.observation_seconds /= rollouts;
+        self.inference_seconds /= rollouts;
+        self.waiting_seconds /= rollouts;
+    }
+}
+
+/// The one copy: every block of the rollout to its segment's rows.
+pub(crate) fn copy(rollout: &Rollout, batch: &mut Batch, segment: usize) {
+    let from = rollout.view();
+    let to = batch.segment_mut(segment);
+    to.observations.copy_from_slice(from.observations);
+    to.actions.copy_from_slice(from.actions);
+    to.means.copy_from_slice(from.means);
+    to.log_probs.copy_from_slice(from.log_probs);
+    to.task_rewards.copy_from_slice(from.task_rewards);
+    to.energies.copy_from_slice(from.energies);
+    to.tracking_errors.copy_from_slice(from.tracking_errors);
+    to.ends.copy_from_slice(from.ends);
+    to.episode_steps.copy_from_slice(from.episode_steps);
+    to.features.copy_from_slice(from.features);
+    to.next_features.copy_from_slice(from.next_features);
+    to.foot_forces.copy_from_slice(from.foot_forces);
+    to.last_observations.copy_from_slice(from.last_observations);
+    to.timeout_observations
+        .copy_from_slice(from.timeout_observations);
+}
