@@ -6,6 +6,7 @@
 
 use crate::actuator;
 use crate::kind::Pools;
+use crate::model::Variation;
 use crate::physics::Bodies;
 use crate::randomization::RandomizationConfig;
 use crate::start::{self, Starts};
@@ -86,7 +87,13 @@ impl Environment {
 
     /// Begins a new episode.
     fn reset(&mut self, setting: &Setting, bodies: &mut Bodies, index: usize) {
-        let variation = setting.randomization.draw_variation(&mut self.random);
+        let table = &setting.randomization;
+        let spared = table.spares(index);
+        let variation = if spared {
+            Variation::NOMINAL
+        } else {
+            table.draw_variation(&mut self.random)
+        };
         let kinds = setting.task.command.kinds.as_ref();
         let kind = kinds.map(|kinds| kinds.of_robot(index, setting.robots));
         let start = start::draw(
@@ -101,7 +108,11 @@ impl Environment {
         self.previous_action = [0.0; JOINTS];
         self.astray = Astray::at_start(start.fits);
         self.command_in = Some(setting.task.command.draw_interval(&mut self.random));
-        self.push_in = setting.randomization.draw_push_interval(&mut self.random);
+        self.push_in = if spared {
+            None
+        } else {
+            table.draw_push_interval(&mut self.random)
+        };
         self.age = 0;
         self.steps = 0;
     }
@@ -181,9 +192,11 @@ impl Environment {
     }
 
     /// Writes what the policy sees now, with sensor noise where it is on (82 numbers).
-    pub(crate) fn observe(&mut self, randomization: &RandomizationConfig, out: &mut [f32]) {
+    pub(crate) fn observe(&mut self, table: &RandomizationConfig, index: usize, out: &mut [f32]) {
         observation::policy_observation(&self.state, &self.command, &self.previous_action, out);
-        randomization.blur(out, &mut self.random);
+        if !table.spares(index) {
+            table.blur(out, &mut self.random);
+        }
     }
 
     /// Steps done in this episode.

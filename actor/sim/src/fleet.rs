@@ -240,12 +240,14 @@ impl Fleet {
                 // Seen before the reset: the value of a timed-out episode is that of its own end.
                 environment.observe(
                     &self.setting.randomization,
+                    i,
                     &mut out.timeout_observations[i * OBSERVATION..][..OBSERVATION],
                 );
             }
             environment.proceed(&self.setting, &mut self.bodies, i, outcome.end);
             environment.observe(
                 &self.setting.randomization,
+                i,
                 &mut self.observations[i * OBSERVATION..][..OBSERVATION],
             );
             let features = &mut self.features[i * FEATURES..][..FEATURES];
@@ -267,6 +269,7 @@ impl Fleet {
         let environment = &mut self.environments[i];
         environment.observe(
             &self.setting.randomization,
+            i,
             &mut self.observations[i * OBSERVATION..][..OBSERVATION],
         );
         observation::features(

@@ -21,6 +21,9 @@ pub struct RandomizationConfig {
     pub from_samples: f64,
     /// Samples at which it counts in full; in between, ranges grow in a straight line. Default 0.
     pub to_samples: f64,
+    /// Share of robots that the table leaves alone. Default 0. Where noise is all that a policy has met,
+    /// it may stand still without: the noise had set it going.
+    pub plain_share: f32,
     /// Vary the torso's mass each episode.
     pub mass_variation: bool,
     /// Added mass, kg.
@@ -79,6 +82,7 @@ impl Default for RandomizationConfig {
         Self {
             from_samples: 0.0,
             to_samples: 0.0,
+            plain_share: 0.0,
             mass_variation: true,
             mass_range: [-0.5, 0.5],
             friction: true,
@@ -143,6 +147,7 @@ impl RandomizationConfig {
     /// Checks every field; names the first bad one, its value and a remedy.
     pub fn validate(&self) -> Result<(), Invalid> {
         config::way("from_samples", [self.from_samples, self.to_samples])?;
+        config::share("plain_share", self.plain_share)?;
         range("mass_range", self.mass_range)?;
         // The torso weighs 7.8 kg and has to keep a positive mass.
         config::at_least("mass_range[0]", self.mass_range[0], -7.0)?;
@@ -190,6 +195,13 @@ impl RandomizationConfig {
     /// Whether the table changes with the samples.
     pub fn grows(&self) -> bool {
         self.to_samples > 0.0
+    }
+
+    /// Whether the table leaves a robot alone. Spread evenly over the robots' numbers (by the golden
+    /// ratio), so that it falls on all kinds of command alike.
+    pub fn spares(&self, robot: usize) -> bool {
+        const GOLDEN: f64 = 0.618_033_988_749_894_9;
+        (robot as f64 * GOLDEN).fract() < f64::from(self.plain_share)
     }
 
     /// The robot and the floor of a new episode.

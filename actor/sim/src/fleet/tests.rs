@@ -387,6 +387,36 @@ fn pushes_come_at_their_time() {
 }
 
 #[test]
+fn the_table_leaves_its_share_of_robots_alone() {
+    let task = TaskConfig::default();
+    let shared = RandomizationConfig {
+        plain_share: 0.5,
+        impulse_seconds: [0.1, 0.1],
+        ..RandomizationConfig::default()
+    };
+    let mut shared = fleet(&task, &shared, 4, 6);
+    let mut plain = fleet(&task, &RandomizationConfig::none(), 4, 6);
+    for _ in 0..6 {
+        step(&mut shared, &[0.0; 4 * ACTION]);
+        step(&mut plain, &[0.0; 4 * ACTION]);
+    }
+    // Multiples of the golden ratio: 0, 0.62, 0.24, 0.85.
+    for (robot, spared) in [true, false, true, false].into_iter().enumerate() {
+        let seen = |fleet: &Fleet| {
+            let row = robot * OBSERVATION..(robot + 1) * OBSERVATION;
+            (fleet.observations()[row].to_vec(), *fleet.state(robot))
+        };
+        assert_eq!(seen(&shared) == seen(&plain), spared, "robot {robot}");
+    }
+    let wrong = RandomizationConfig {
+        plain_share: 1.5,
+        ..RandomizationConfig::default()
+    };
+    let error = wrong.validate().unwrap_err().to_string();
+    assert!(error.contains("plain_share"), "{error}");
+}
+
+#[test]
 fn broken_numbers_reset_and_never_leave() {
     ENGINES.into_iter().for_each(resets_what_broke);
 }
