@@ -1,10 +1,11 @@
-//! Bias, activation and their derivatives as single burn operations.
+//! Products, bias, activation and their derivatives as single burn operations.
 //!
 //! Composed of burn's own operations, a layer's bias and ELU read and write its activations about ten times, more work
 //! than the matrix product's on this kind of machine. Here each direction is one pass, in place where burn allows it.
 //!
 //! Compiled for burn's CPU backend only; another backend needs an implementation of [`FusedOps`] and [`FusedBackward`].
 
+use crate::product::{Matrix, product as multiply};
 use crate::{Activation, kernels};
 use burn::backend::autodiff::{
     checkpoint::{base::Checkpointer, strategy::CheckpointStrategy},
@@ -15,6 +16,14 @@ use burn::backend::flex::FlexTensor;
 use burn::backend::tensor::FloatTensor;
 use burn::backend::{Autodiff, Backend, Dispatch, Flex, TensorMetadata, backend_extension};
 use burn::tensor::{Tensor, TensorData};
+
+/// `left · right`; left `[n, inner]`, right `[inner, columns]`, either of them possibly a transpose.
+pub fn product(left: Tensor<2>, right: Tensor<2>) -> Tensor<2> {
+    Tensor::from_dispatch(Dispatch::product(
+        left.into_dispatch(),
+        right.into_dispatch(),
+    ))
+}
 
 /// `activation(sums + bias)`; sums `[n, columns]`, bias `[columns]`.
 pub fn activate(sums: Tensor<2>, bias: Tensor<1>, activation: Activation) -> Tensor<2> {
@@ -38,6 +47,8 @@ pub fn gate(values: Tensor<2>, outputs: Tensor<2>) -> Tensor<2> {
 /// The operations, on tensors with and without a record of derivatives.
 #[backend_extension(Flex, Autodiff)]
 pub trait FusedOps: Backend {
+    /// See [`product`].
+    fn product(left: FloatTensor<Self>, right: FloatTensor<Self>) -> FloatTensor<Self>;
     /// See [`activate`].
     fn activate(
         sums: FloatTensor<Self>,
@@ -65,6 +76,12 @@ pub trait FusedBackward: Backend {
 }
 
 impl FusedOps for Flex {
+    fn product(left: FlexTensor, right: FlexTensor) -> FlexTensor {
+        let (left, right) = (matrix(&left), matrix(&right));
+        let shape = [left.rows(), right.columns()];
+        FlexTensor::from_data(TensorData::new(multiply(left, right), shape))
+    }
+
     fn activate(mut sums: FlexTensor, bias: FlexTensor, activation: Activation) -> FlexTensor {
         assert!(sums.is_contiguous(), "a product's result is contiguous");
         kernels::activate(sums.storage_mut(), bias.storage(), activation);
@@ -121,6 +138,37 @@ impl FusedBackward for Flex {
     }
 }
 
+/// A tensor of two dimensions as it lies in memory.
+fn matrix(tensor: &FlexTensor) -> Matrix<'_> {
+    let layout = tensor.layout();
+    let strides = <[isize; 2]>::try_from(layout.strides()).expect("two dimensions");
+    let strides =
+        strides.map(|stride| usize::try_from(stride).expect("nothing flipped is multiplied here"));
+    let values = &tensor.storage()[layout.start_offset()..];
+    Matrix::new(values, tensor.shape().dims(), strides)
+}
+
+/// The step back through [`product`]:  dL = dY·Rᵀ,  dR = Lᵀ·dY.
+#[derive(Debug)]
+struct Product;
+
+impl<B: FusedOps> Backward<B, 2> for Product {
+    type State = [FloatTensor<B>; 2];
+
+    fn backward(self, ops: Ops<Self::State, 2>, grads: &mut Gradients, _: &mut Checkpointer) {
+        let ([left_node, right_node], [left, right]) = (ops.parents, ops.state);
+        let gradient = grads.consume::<B>(&ops.node);
+        if let Some(node) = left_node {
+            let left = B::product(gradient.clone(), B::float_transpose(right));
+            grads.register::<B>(node.id, left);
+        }
+        if let Some(node) = right_node {
+            let right = B::product(B::float_transpose(left), gradient);
+            grads.register::<B>(node.id, right);
+        }
+    }
+}
+
 /// The step back through [`activate`].
 #[derive(Debug)]
 struct Activate(Activation);
@@ -158,6 +206,20 @@ impl<B: FusedBackward> Backward<B, 1> for Gate {
 }
 
 impl<B: FusedOps + FusedBackward, C: CheckpointStrategy> FusedOps for Autodiff<B, C> {
+    fn product(left: FloatTensor<Self>, right: FloatTensor<Self>) -> FloatTensor<Self> {
+        let (left, left_node) = left.into_parts();
+        let (right, right_node) = right.into_parts();
+        let product = B::product(left.clone(), right.clone());
+        match Product
+            .prepare::<C>([left_node, right_node])
+            .compute_bound()
+            .stateful()
+        {
+            OpsKind::Tracked(prep) => prep.finish([left, right], product),
+            OpsKind::UnTracked(prep) => prep.finish(product),
+        }
+    }
+
     fn activate(
         sums: FloatTensor<Self>,
         bias: FloatTensor<Self>,

@@ -8,13 +8,14 @@
 //! | --- | --- |
 //! | [`Shape`] | sizes of a perceptron and the layout of its flat weights |
 //! | [`Mlp`] | forward, gradients of parameters, gradient with respect to the input |
-//! | [`fused`] | bias, activation and their derivatives in one pass, as a burn operation |
+//! | [`fused`] | products, bias, activation and their derivatives in one pass, as burn operations |
 //! | [`orthogonal`] | first weights |
 //! | [`Adam`] | the optimizer, with decoupled weight decay |
 //! | [`Normalizer`] | running mean and variance |
 //! | [`snapshot`] | what actors get: statistics, exploration widths, actor |
 //! | [`shards`] | rows divided among threads |
-#![forbid(unsafe_code)]
+// The one exception is `product`, which hands matrices to a library by pointer.
+#![deny(unsafe_code)]
 
 mod adam;
 mod device;
@@ -26,6 +27,7 @@ mod init;
 mod kernels;
 mod mlp;
 mod normalizer;
+mod product;
 mod shape;
 pub mod shards;
 pub mod snapshot;

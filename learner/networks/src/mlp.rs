@@ -98,7 +98,7 @@ impl Mlp {
             self.shape.activation
         };
         fused::activate(
-            rows.matmul(layer.weight.val()),
+            fused::product(rows, layer.weight.val()),
             layer.bias.val(),
             activation,
         )
@@ -128,13 +128,13 @@ impl Mlp {
             let down = layer.weight.val().transpose();
             let ungated = match gradient {
                 None => down, // the head: one row for all
-                Some(gradient) => gradient.matmul(down),
+                Some(gradient) => fused::product(gradient, down),
             };
             gradient = Some(fused::gate(ungated, hidden.clone()));
         }
         let first = self.layers[0].weight.val().transpose();
         match gradient {
-            Some(gradient) => gradient.matmul(first),
+            Some(gradient) => fused::product(gradient, first),
             None => first, // a linear network has the same gradient everywhere
         }
     }

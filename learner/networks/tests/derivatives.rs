@@ -1,7 +1,7 @@
 //! Gradients against finite differences, and threads against one.
 
 use burn::tensor::Tensor;
-use networks::{Activation, Mlp, Shape, orthogonal, shards, tensor, tracked_device, values};
+use networks::{Activation, Mlp, Shape, fused, orthogonal, shards, tensor, tracked_device, values};
 use rand::{RngExt, SeedableRng};
 
 const ROWS: usize = 7;
@@ -50,6 +50,22 @@ fn deviation(shape: &Shape, flat: &[f32], loss: impl Fn(&Mlp) -> Tensor<1>) -> f
         worst = worst.max((difference - f64::from(gradient[i])).abs());
     }
     worst / f64::from(largest)
+}
+
+#[test]
+fn products_and_their_gradients_are_burn_s_bit_by_bit() {
+    type Product = fn(Tensor<2>, Tensor<2>) -> Tensor<2>;
+    let (left, right) = (rows(5, 4), rows(5, 5)); // [7, 5] and the transpose of [7, 5]
+    let of = |multiply: Product| {
+        let device = tracked_device();
+        let left = tensor(left.clone(), 5, &device).require_grad();
+        let right = tensor(right.clone(), 5, &device).require_grad();
+        let product = multiply(left.clone(), right.clone().transpose());
+        let mut gradients = product.clone().square().sum().backward();
+        let mut gradient = |of: &Tensor<2>| values(of.grad_remove(&mut gradients).unwrap());
+        (values(product), gradient(&left), gradient(&right))
+    };
+    assert_eq!(of(fused::product), of(Tensor::matmul));
 }
 
 #[test]
