@@ -1,9 +1,9 @@
 //! One linear layer on a block of rows: the product, the bias and the activation in one pass.
 //!
 //! A tile of up to 6 rows and 32 columns (16 with AVX2) is kept in registers while the loop runs along the inputs. The
-//! source is generic over the width of vectors; `pulp` compiles it for AVX-512, AVX2, NEON and plain numbers and enters the best
-//! that the machine has. All are fused multiply-adds in the order of the inputs, one chain per output, so that they
-//! agree bit by bit, whatever the tile.
+//! source is generic over the width of vectors; `pulp` compiles it for AVX-512, AVX2, NEON and plain numbers and enters
+//! the best that the machine has. All are fused multiply-adds in the order of the inputs, one chain per output, so that
+//! they agree bit by bit, whatever the tile.
 
 use pulp::{Arch, Simd, WithSimd};
 

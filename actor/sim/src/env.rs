@@ -6,7 +6,6 @@
 
 use crate::actuator;
 use crate::kind::Pools;
-use crate::model::Variation;
 use crate::physics::Bodies;
 use crate::randomization::RandomizationConfig;
 use crate::start::{self, Starts};
@@ -21,11 +20,24 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct Setting {
     pub(crate) task: TaskConfig,
     pub(crate) randomization: RandomizationConfig,
+    /// The table of robots that it leaves alone: every row off.
+    pub(crate) plain: RandomizationConfig,
     pub(crate) starts: Starts,
     /// The starts by kind of command.
     pub(crate) pools: Pools,
     /// Robots of the fleet.
     pub(crate) robots: usize,
+}
+
+impl Setting {
+    /// Table I as it counts for a robot.
+    pub(crate) fn table(&self, robot: usize) -> &RandomizationConfig {
+        if self.randomization.spares(robot) {
+            &self.plain
+        } else {
+            &self.randomization
+        }
+    }
 }
 
 /// What a step of one environment brought.
@@ -87,13 +99,8 @@ impl Environment {
 
     /// Begins a new episode.
     fn reset(&mut self, setting: &Setting, bodies: &mut Bodies, index: usize) {
-        let table = &setting.randomization;
-        let spared = table.spares(index);
-        let variation = if spared {
-            Variation::NOMINAL
-        } else {
-            table.draw_variation(&mut self.random)
-        };
+        let table = setting.table(index);
+        let variation = table.draw_variation(&mut self.random);
         let kinds = setting.task.command.kinds.as_ref();
         let kind = kinds.map(|kinds| kinds.of_robot(index, setting.robots));
         let start = start::draw(
@@ -108,11 +115,7 @@ impl Environment {
         self.previous_action = [0.0; JOINTS];
         self.astray = Astray::at_start(start.fits);
         self.command_in = Some(setting.task.command.draw_interval(&mut self.random));
-        self.push_in = if spared {
-            None
-        } else {
-            table.draw_push_interval(&mut self.random)
-        };
+        self.push_in = table.draw_push_interval(&mut self.random);
         self.age = 0;
         self.steps = 0;
     }
@@ -131,12 +134,13 @@ impl Environment {
             return false;
         }
         if count_down(&mut self.push_in) {
-            let push = setting.randomization.draw_push(&mut self.random);
+            let table = setting.table(index);
+            let push = table.draw_push(&mut self.random);
             bodies.push(index, push);
             if let Some(rule) = &setting.task.stray {
                 self.astray.pushed(rule);
             }
-            self.push_in = setting.randomization.draw_push_interval(&mut self.random);
+            self.push_in = table.draw_push_interval(&mut self.random);
         }
         bodies.set_targets(index, &actuator::targets(action));
         self.previous_action = *action;
@@ -192,11 +196,9 @@ impl Environment {
     }
 
     /// Writes what the policy sees now, with sensor noise where it is on (82 numbers).
-    pub(crate) fn observe(&mut self, table: &RandomizationConfig, index: usize, out: &mut [f32]) {
+    pub(crate) fn observe(&mut self, table: &RandomizationConfig, out: &mut [f32]) {
         observation::policy_observation(&self.state, &self.command, &self.previous_action, out);
-        if !table.spares(index) {
-            table.blur(out, &mut self.random);
-        }
+        table.blur(out, &mut self.random);
     }
 
     /// Steps done in this episode.

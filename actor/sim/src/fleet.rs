@@ -86,6 +86,7 @@ impl Fleet {
         let setting = Setting {
             task: task.clone(),
             randomization: randomization.clone(),
+            plain: RandomizationConfig::none(),
             pools: Pools::of(&starts),
             starts,
             robots: environments,
@@ -239,15 +240,13 @@ impl Fleet {
             if outcome.end == End::Timeout {
                 // Seen before the reset: the value of a timed-out episode is that of its own end.
                 environment.observe(
-                    &self.setting.randomization,
-                    i,
+                    self.setting.table(i),
                     &mut out.timeout_observations[i * OBSERVATION..][..OBSERVATION],
                 );
             }
             environment.proceed(&self.setting, &mut self.bodies, i, outcome.end);
             environment.observe(
-                &self.setting.randomization,
-                i,
+                self.setting.table(i),
                 &mut self.observations[i * OBSERVATION..][..OBSERVATION],
             );
             let features = &mut self.features[i * FEATURES..][..FEATURES];
@@ -268,8 +267,7 @@ impl Fleet {
     fn look(&mut self, i: usize) {
         let environment = &mut self.environments[i];
         environment.observe(
-            &self.setting.randomization,
-            i,
+            self.setting.table(i),
             &mut self.observations[i * OBSERVATION..][..OBSERVATION],
         );
         observation::features(
