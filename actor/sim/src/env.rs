@@ -8,6 +8,7 @@ use crate::actuator;
 use crate::kind::Pools;
 use crate::physics::Bodies;
 use crate::randomization::RandomizationConfig;
+use crate::stance::Footing;
 use crate::start::{self, Starts};
 use crate::stray::Astray;
 use crate::task::{self, End, TaskConfig};
@@ -64,6 +65,7 @@ pub(crate) struct Environment {
     command: [f32; 3],
     previous_action: [f32; JOINTS],
     astray: Astray,
+    feet: Footing,
     /// Steps until a new command; none while the command is held from outside.
     command_in: Option<u32>,
     /// Steps until the next push; none without pushes.
@@ -83,6 +85,7 @@ impl Environment {
             command: [0.0; 3],
             previous_action: [0.0; JOINTS],
             astray: Astray::default(),
+            feet: Footing::default(),
             command_in: None,
             push_in: None,
             age: 0,
@@ -114,6 +117,7 @@ impl Environment {
         self.command = start.command;
         self.previous_action = [0.0; JOINTS];
         self.astray = Astray::at_start(start.fits);
+        self.feet = Footing::default();
         self.command_in = Some(setting.task.command.draw_interval(&mut self.random));
         self.push_in = table.draw_push_interval(&mut self.random);
         self.age = 0;
@@ -167,8 +171,15 @@ impl Environment {
             End::Running
         };
         let (energy, foot_forces) = bodies.work_and_forces(index);
+        self.feet.step(foot_forces);
+        let long_steps = setting
+            .task
+            .single_stance
+            .as_ref()
+            .map_or(1.0, |pay| pay.factor(&self.command, &self.feet));
+        let obeys = setting.task.reward(&self.command, &self.state, energy);
         Outcome {
-            task_reward: setting.task.reward(&self.command, &self.state, energy),
+            task_reward: obeys * long_steps,
             tracking_error: task::tracking_error(&self.command, &self.state),
             energy,
             foot_forces,

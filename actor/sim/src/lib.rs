@@ -16,6 +16,7 @@
 //! | where episodes begin | [`start`] |
 //! | domain randomisation (Table I) | [`randomization`] |
 //! | straying from the command ends an episode | [`stray`] |
+//! | standing on one foot at a time pays | [`stance`] |
 //! | motors: position control, torque limits, energy (III-F) | [`actuator`] |
 //! | the two engines behind one seam | [`physics`] |
 //! | a robot in rapier, state in and out | [`world`], [`model`] |
@@ -35,6 +36,7 @@ pub mod model;
 pub mod physics;
 pub mod randomization;
 pub mod rows;
+pub mod stance;
 pub mod start;
 pub mod stray;
 pub mod task;
@@ -52,6 +54,7 @@ pub use model::Variation;
 pub use physics::Physics;
 pub use randomization::RandomizationConfig;
 pub use rows::StepRows;
+pub use stance::SingleStanceConfig;
 pub use start::{StartConfig, Starts};
 pub use stray::StrayConfig;
 pub use task::TaskConfig;

@@ -7,6 +7,7 @@ use crate::command::CommandConfig;
 use crate::config::{self, Invalid};
 use crate::curriculum::CurriculumConfig;
 use crate::physics::Physics;
+use crate::stance::SingleStanceConfig;
 use crate::start::StartConfig;
 use crate::stray::StrayConfig;
 use g1::RobotState;
@@ -47,6 +48,9 @@ pub struct TaskConfig {
     /// When an episode ends because the robot does not do what it is told. Default: never.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stray: Option<StrayConfig>,
+    /// What long steps pay. Default: nothing, as in Eq. 14.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub single_stance: Option<SingleStanceConfig>,
     /// Where some of these values go as samples come in. Default: nowhere.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub curriculum: Option<CurriculumConfig>,
@@ -66,6 +70,7 @@ impl Default for TaskConfig {
             command: CommandConfig::default(),
             start: StartConfig::default(),
             stray: None,
+            single_stance: None,
             curriculum: None,
         }
     }
@@ -99,6 +104,9 @@ impl TaskConfig {
         self.command.validate()?;
         self.start.validate()?;
         self.stray.as_ref().map_or(Ok(()), StrayConfig::validate)?;
+        self.single_stance
+            .as_ref()
+            .map_or(Ok(()), SingleStanceConfig::validate)?;
         self.curriculum
             .as_ref()
             .map_or(Ok(()), CurriculumConfig::validate)

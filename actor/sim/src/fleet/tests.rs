@@ -1,5 +1,7 @@
 //! Contracts of the fleet: what is written when, what depends on what.
 
+mod reward;
+
 use super::*;
 use crate::command::CommandConfig;
 use crate::model::Variation;
@@ -230,35 +232,6 @@ fn observations_show_the_command_and_the_previous_action() {
         fleet.observations()[OBSERVATION..][observation::COMMAND],
         [0.1, 0.2, 0.3]
     );
-}
-
-#[test]
-fn reward_and_error_are_those_of_the_state_reached_under_the_old_command() {
-    let task = TaskConfig {
-        kernel: 2.0,
-        yaw_rate_weight: 0.25,
-        command: CommandConfig {
-            resample_seconds: [0.02, 0.02], // a new command every step
-            ..CommandConfig::default()
-        },
-        ..TaskConfig::default()
-    };
-    let mut fleet = fleet(&task, &RandomizationConfig::none(), 1, 9);
-    for _ in 0..5 {
-        let command = fleet.command(0);
-        let out = step(&mut fleet, &[0.0; ACTION]);
-        assert_eq!(out.ends[0], 0.0);
-        let state = fleet.state(0);
-        assert_eq!(
-            out.task_rewards[0],
-            task.reward(&command, state, out.energies[0])
-        );
-        assert_eq!(
-            out.tracking_errors[0],
-            crate::task::tracking_error(&command, state)
-        );
-        assert_ne!(fleet.command(0), command);
-    }
 }
 
 #[test]

@@ -1,0 +1,132 @@
+//! Standing on one foot at a time: long steps pay more than many short ones.
+//!
+//! Separate because it is a measure with a memory, and a wish of its own: Eq. 14 asks for a velocity,
+//! and small quick steps, a shuffle or a hop obey it as well as a walk. The discriminator looks at a
+//! tenth of a second; how long a foot stays in the air is beyond it.
+
+use crate::config::{self, Invalid};
+use crate::world::CONTROL_STEP;
+use g1::gait::CONTACT_FORCE;
+use serde::{Deserialize, Serialize};
+
+/// What standing on one foot pays. As Isaac Lab's `feet_air_time_positive_biped`, which adds a reward;
+/// here it is a factor, so that the task reward stays between 0 and 1, where Eq. 9 and Eq. 12 expect it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SingleStanceConfig {
+    /// Share of the task reward that is paid for it. Default 0.3.
+    pub share: f32,
+    /// Time for which one foot has to stand and the other to swing until all of the share is paid, s.
+    /// Default 0.4, nearly half of a stride of the reference gait at 1 m/s.
+    pub seconds: f32,
+}
+
+impl Default for SingleStanceConfig {
+    fn default() -> Self {
+        Self {
+            share: 0.3,
+            seconds: 0.4,
+        }
+    }
+}
+
+impl SingleStanceConfig {
+    /// Checks every field; names the first bad one, its value and a remedy.
+    pub fn validate(&self) -> Result<(), Invalid> {
+        config::share("single_stance.share", self.share)?;
+        config::at_least("single_stance.seconds", self.seconds, CONTROL_STEP)
+    }
+
+    /// Factor of the task reward, 1 − s·(1 − min(t/T, 1)), where t is how long the feet have been as they
+    /// are, the shorter of the two, if just one of them stands, and 0 otherwise. 1 for who is told to
+    /// stand.
+    pub(crate) fn factor(&self, command: &[f32; 3], feet: &Footing) -> f32 {
+        if *command == [0.0; 3] {
+            return 1.0;
+        }
+        let paid = (feet.single_stance() / self.seconds).min(1.0);
+        1.0 - self.share * (1.0 - paid)
+    }
+}
+
+/// Which feet stand, and for how long.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Footing {
+    /// Of the left and the right foot.
+    down: [bool; 2],
+    /// Control steps since each came down or was lifted, or since the episode began.
+    steps: [u32; 2],
+}
+
+impl Footing {
+    /// Takes one more control step in: the vertical forces on the left and the right sole, N.
+    pub(crate) fn step(&mut self, forces: [f32; 2]) {
+        for (foot, force) in forces.into_iter().enumerate() {
+            let down = force > CONTACT_FORCE;
+            if down != self.down[foot] {
+                self.steps[foot] = 0;
+            }
+            self.down[foot] = down;
+            self.steps[foot] += 1;
+        }
+    }
+
+    /// How long one foot has stood and the other has not, the shorter of the two, s; 0 with both or none
+    /// on the ground.
+    fn single_stance(&self) -> f32 {
+        if self.down[0] == self.down[1] {
+            return 0.0;
+        }
+        self.steps[0].min(self.steps[1]) as f32 * CONTROL_STEP
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LEFT: [f32; 2] = [315.0, 0.0];
+    const BOTH: [f32; 2] = [160.0, 155.0];
+    const NONE: [f32; 2] = [0.0; 2];
+    const AHEAD: [f32; 3] = [1.0, 0.0, 0.0];
+
+    /// Factor after steps with these forces.
+    fn factor(steps: &[([f32; 2], usize)]) -> f32 {
+        let mut feet = Footing::default();
+        for &(forces, count) in steps {
+            (0..count).for_each(|_| feet.step(forces));
+        }
+        SingleStanceConfig::default().factor(&AHEAD, &feet)
+    }
+
+    #[test]
+    fn long_steps_pay_by_hand() {
+        let close = |got: f32, expected: f32| assert!((got - expected).abs() < 1e-6, "{got}");
+        close(factor(&[(BOTH, 9)]), 0.7);
+        close(factor(&[(NONE, 9)]), 0.7);
+        // The right foot has swung for 10 steps of 20 ms, half of 0.4 s, the left has stood for longer.
+        close(factor(&[(BOTH, 9), (LEFT, 10)]), 0.85);
+        close(factor(&[(BOTH, 9), (LEFT, 60)]), 1.0);
+        // The left foot has just landed; how long the right has been in the air does not help.
+        close(factor(&[(NONE, 30), (LEFT, 2)]), 0.7 + 0.3 * 0.1);
+    }
+
+    #[test]
+    fn who_is_told_to_stand_is_not_asked_to_lift_a_foot() {
+        let feet = Footing::default();
+        let config = SingleStanceConfig::default();
+        assert_eq!(config.factor(&[0.0; 3], &feet), 1.0);
+        assert_eq!(config.factor(&[0.0, 0.0, 0.5], &feet), 0.7);
+    }
+
+    #[test]
+    fn shares_beyond_all_and_times_of_nothing_are_refused() {
+        let refused = |share, seconds| {
+            let config = SingleStanceConfig { share, seconds };
+            config.validate().unwrap_err().to_string()
+        };
+        assert!(refused(1.5, 0.4).contains("single_stance.share = 1.5"));
+        assert!(refused(0.5, 0.0).contains("single_stance.seconds = 0"));
+        SingleStanceConfig::default().validate().unwrap();
+    }
+}
