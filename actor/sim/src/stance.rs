@@ -46,9 +46,10 @@ impl SingleStanceConfig {
         })
     }
 
-    /// Factor of the task reward, 1 − s·(1 − min(t/T, 1)), where t is how long the feet have been as they
-    /// are, the shorter of the two, if just one of them stands, and 0 otherwise; of a run, how long the
-    /// foot that was lifted first is in the air. 1 for who is told to stand.
+    /// Factor of the task reward, 1 − s·(1 − p) with p = min(t/T, 1) up to t = 2·T and 0 beyond. t is how
+    /// long the feet have been as they are, the shorter of the two, if just one of them stands, and 0
+    /// otherwise; of a run, how long the foot that was lifted first is in the air. 1 for who is told to
+    /// stand. Without the end at 2·T those told to turn on the spot stood on one leg.
     pub(crate) fn factor(&self, command: &[f32; 3], feet: &Footing) -> f32 {
         if *command == [0.0; 3] {
             return 1.0;
@@ -59,7 +60,8 @@ impl SingleStanceConfig {
         } else {
             feet.single_stance()
         };
-        let paid = (time / self.seconds).min(1.0);
+        let share = time / self.seconds;
+        let paid = if share > 2.0 { 0.0 } else { share.min(1.0) };
         1.0 - self.share * (1.0 - paid)
     }
 }
@@ -128,7 +130,8 @@ mod tests {
         close(factor(&[(NONE, 9)]), 0.7);
         // The right foot has swung for 10 steps of 20 ms, half of 0.4 s, the left has stood for longer.
         close(factor(&[(BOTH, 9), (LEFT, 10)]), 0.85);
-        close(factor(&[(BOTH, 9), (LEFT, 60)]), 1.0);
+        close(factor(&[(BOTH, 9), (LEFT, 39)]), 1.0);
+        close(factor(&[(BOTH, 9), (LEFT, 60)]), 0.7);
         // The left foot has just landed; how long the right has been in the air does not help.
         close(factor(&[(NONE, 30), (LEFT, 2)]), 0.7 + 0.3 * 0.1);
     }
