@@ -24,6 +24,11 @@ pub struct CommandConfig {
     /// Share of the others that have one part alone, forward, lateral or yaw rate, each as often.
     /// Default 0: all three at once, and hardly ever straight on, aside or on the spot.
     pub pure_share: f32,
+    /// Least size of commands to go back, aside or to turn alone, as a share of the end of their range on
+    /// that side. Default 0. Standing obeys the small ones nearly as well as stepping does, and is learnt
+    /// for all.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub least_share: f32,
     /// Seconds between new commands, drawn uniformly. Default 3 to 10, the span in use among
     /// published trainers.
     pub resample_seconds: [f32; 2],
@@ -44,6 +49,7 @@ impl Default for CommandConfig {
             yaw_rate: [0.0, 0.0],
             standing_share: 0.0,
             pure_share: 0.0,
+            least_share: 0.0,
             resample_seconds: [3.0, 10.0],
             matched_share: 0.9,
             kinds: None,
@@ -59,6 +65,7 @@ impl CommandConfig {
         range("command.yaw_rate", self.yaw_rate)?;
         config::share("command.standing_share", self.standing_share)?;
         config::share("command.pure_share", self.pure_share)?;
+        config::share("command.least_share", self.least_share)?;
         range("command.resample_seconds", self.resample_seconds)?;
         config::at_least(
             "command.resample_seconds[0]",
@@ -82,12 +89,24 @@ impl CommandConfig {
             let pure = rng.random::<f32>() < self.pure_share;
             let part = rng.random_range(0..command.len());
             if pure {
-                let value = command[part];
+                let value = match part {
+                    0 if command[0] >= 0.0 => command[0],
+                    0 => self.away(command[0], self.forward),
+                    1 => self.away(command[1], self.lateral),
+                    _ => self.away(command[2], self.yaw_rate),
+                };
                 command = [0.0; 3];
                 command[part] = value;
             }
         }
         if stand { [0.0; 3] } else { command }
+    }
+
+    /// A value of a range as far from 0 as `least_share` says; all values as likely as before, on the
+    /// same side.
+    pub(crate) fn away(&self, value: f32, [least, greatest]: [f32; 2]) -> f32 {
+        let end = if value < 0.0 { least } else { greatest };
+        value + self.least_share * (end - value)
     }
 
     /// A command for the beginning of an episode of a robot that keeps to a kind, or to none.
@@ -117,6 +136,11 @@ impl CommandConfig {
     pub fn draw_interval(&self, rng: &mut impl Rng) -> u32 {
         config::steps(self.resample_seconds, rng)
     }
+}
+
+/// Whether an option is off.
+fn is_zero(value: &f32) -> bool {
+    *value == 0.0
 }
 
 #[cfg(test)]
@@ -169,6 +193,31 @@ mod tests {
         for (count, expected) in counts.into_iter().zip([800_i32, 800, 800, 1_600]) {
             assert!((expected - count).abs() < 155, "{counts:?}");
         }
+    }
+
+    #[test]
+    fn pure_commands_keep_away_from_standing() {
+        let config = CommandConfig {
+            forward: [-0.6, 2.0],
+            lateral: [-0.4, 0.4],
+            yaw_rate: [-1.0, 1.0],
+            pure_share: 1.0,
+            least_share: 0.5,
+            ..CommandConfig::default()
+        };
+        // From the range's end, and from near 0, by hand.
+        assert_eq!(config.away(-0.4, config.lateral), -0.4);
+        assert!((config.away(0.1, config.lateral) - 0.25).abs() < 1e-6);
+        let mut rng = Pcg64Mcg::seed_from_u64(5);
+        let mut slow = 0;
+        for _ in 0..2_000 {
+            let [forward, lateral, yaw_rate] = config.draw(&mut rng);
+            assert!(forward >= 0.0 || (-0.6..=-0.3).contains(&forward));
+            assert!(lateral == 0.0 || (0.2..=0.4).contains(&lateral.abs()));
+            assert!(yaw_rate == 0.0 || (0.5..=1.0).contains(&yaw_rate.abs()));
+            slow += usize::from(forward > 0.0 && forward < 0.5);
+        }
+        assert!(slow > 50, "slow walks are kept: {slow}");
     }
 
     #[test]

@@ -66,9 +66,10 @@ impl Kind {
         let ahead = ranges.kinds.as_ref().map_or(0.0, |kinds| kinds.approach);
         match self {
             Self::Standing => [0.0; 3],
-            Self::Forward | Self::Backward => [vx, 0.0, 0.0],
-            Self::Lateral => [ahead, vy, 0.0],
-            Self::Turning => [ahead, 0.0, yaw_rate],
+            Self::Forward => [vx, 0.0, 0.0],
+            Self::Backward => [ranges.away(vx, forward), 0.0, 0.0],
+            Self::Lateral => [ahead, ranges.away(vy, ranges.lateral), 0.0],
+            Self::Turning => [ahead, 0.0, ranges.away(yaw_rate, ranges.yaw_rate)],
             Self::Mixed => [vx, vy, yaw_rate],
         }
     }
