@@ -3,6 +3,10 @@
 //! Separate because imported, built-in and mirrored clips are measured alike, and because a training
 //! run cannot be better than this.
 
+mod tracking;
+
+pub use tracking::Tracking;
+
 use crate::clip::{Clip, FRAME_SECONDS};
 use g1::kinematics::{forward_state, lowest_sole_point, sole_points};
 use g1::{JOINT_TABLE, JOINTS, LEFT_FOOT, RIGHT_FOOT, RobotState};
@@ -24,6 +28,8 @@ pub struct Quality {
     pub speed: f64,
     /// Mean yaw rate, rad/s.
     pub yaw_rate: f64,
+    /// How well who moves exactly so obeys the clip's command.
+    pub tracking: Tracking,
     /// Speeds over half a second that 5 % and 95 % of frames stay below, m/s.
     pub speed_range: [f64; 2],
     /// Speed over the ground of the lowest corner of a standing sole: median, m/s; 0 if none stands.
@@ -88,6 +94,7 @@ impl Quality {
             seconds: clip.seconds(),
             speed: f64::from(clip.speed()),
             yaw_rate: f64::from(clip.command[2]),
+            tracking: Tracking::of(clip),
             speed_range: [quantile(&mut speeds, 0.05), quantile(&mut speeds, 0.95)],
             slip: median(&mut slips),
             slip_95: quantile(&mut slips, 0.95),

@@ -99,6 +99,11 @@ fn details(out: &mut impl Write, clip: &Clip, quality: &Quality) -> Result<()> {
     )?;
     writeln!(
         out,
+        "    who moves exactly so is off its command by {:.3} m/s, {:.3} m/s of it aside, and by {:.3} rad/s",
+        quality.tracking.rmse, quality.tracking.rmse_lateral, quality.tracking.rmse_yaw_rate
+    )?;
+    writeln!(
+        out,
         "    left foot down {:.0} %, right {:.0} %, none {:.0} %; slip 95 % below {:.2} m/s",
         100.0 * quality.duty[0],
         100.0 * quality.duty[1],
