@@ -176,7 +176,7 @@ fn search(root: &Path, folder: &Path, sources: &mut Vec<Source>) -> Result<()> {
             search(root, &path, sources)?;
         } else if ending.is_some_and(|e| EXTENSIONS.contains(&e.as_str())) {
             let inner = path.strip_prefix(root).unwrap_or(&path);
-            let name = name(&inner.with_extension("")).replace('/', "_");
+            let name = name(inner);
             let folders = inner
                 .parent()
                 .map(|p| p.to_string_lossy().replace('/', "_"));
@@ -232,6 +232,8 @@ mod tests {
             "CMU/02/b.npz",
             "CMU/02/a.NPZ",
             "walk.csv",
+            "walk_0.50.csv",
+            "walk_0.98.csv",
             "notes.txt",
             "CMU/readme",
         ] {
@@ -239,7 +241,10 @@ mod tests {
         }
         let found = sources(vec![root.into()]).found().unwrap();
         let names: Vec<&str> = found.iter().map(|s| s.name.as_str()).collect();
-        assert_eq!(names, ["CMU_02_a", "CMU_02_b", "walk"]);
+        assert_eq!(
+            names,
+            ["CMU_02_a", "CMU_02_b", "walk", "walk_0.50", "walk_0.98"]
+        );
         let twice = sources(vec![root.into(), root.join("walk.csv")])
             .found()
             .unwrap_err();
