@@ -20,8 +20,8 @@ pub struct SingleStanceConfig {
     /// Default 0.4, nearly half of a stride of the reference gait at 1 m/s.
     pub seconds: f32,
     /// Commanded forward speed from which a run is asked for, m/s: then how long a foot has been in the air
-    /// counts, whether the other stands or not. Default: never. Without it robots walk at 2 m/s, with no
-    /// flight, though the clips there run.
+    /// counts, whether the other stands or not. Default: never. Robots walk at 2 m/s, though the clips there
+    /// run; so far they do with this as well.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub run_from: Option<f32>,
 }

@@ -117,7 +117,7 @@ impl TaskConfig {
     ///
     /// v is the pelvis' planar velocity in the heading frame, ω its yaw rate about the vertical, E the
     /// positive mechanical work of the step, J. A factor, so that rᴳ stays between 0 and 1, where Eq. 9
-    /// and Eq. 12 expect it.
+    /// and Eq. 12 expect it. Where `single_stance` is given, an environment pays that factor of it.
     pub fn reward(&self, command: &[f32; 3], state: &RobotState, work: f32) -> f32 {
         let yaw_error = command[2] - state.angular_velocity.z;
         let error = tracking_error(command, state) + self.yaw_rate_weight * yaw_error.powi(2);
