@@ -9,6 +9,7 @@ mod bad_input;
 mod disk;
 mod elastic;
 mod faults;
+mod features;
 mod group;
 mod harness;
 mod isolation;

@@ -74,15 +74,16 @@ fn browse(browser: &Path, folder: &Path, fragment: &str, budget_ms: u32, option:
 }
 
 fn pixels(path: &Path) -> (usize, Vec<u8>) {
-    let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
-    let mut reader = png::Decoder::new(file).read_info().unwrap();
-    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
-    let info = reader.next_frame(&mut bytes).unwrap();
-    let channels = info.color_type.samples();
-    let rgb = bytes
-        .chunks_exact(channels)
+    let file = std::fs::read(path).unwrap();
+    let header = minipng::decode_png_header(&file).unwrap();
+    let mut bytes = vec![0; header.required_bytes_rgba8bpc()];
+    let mut image = minipng::decode_png(&file, &mut bytes).unwrap();
+    image.convert_to_rgba8bpc().unwrap();
+    let rgb = image
+        .pixels()
+        .chunks_exact(4)
         .flat_map(|p| [p[0], p[1], p[2]]);
-    (info.width as usize, rgb.collect())
+    (image.width() as usize, rgb.collect())
 }
 
 #[test]
