@@ -9,7 +9,7 @@ mod ppo;
 
 pub use discriminator::{DiscriminatorConfig, Floors};
 pub use policy::{ExplorationConfig, ExplorationKind, PolicyConfig};
-pub use ppo::{AdvantageNormalization, PpoConfig, RateSchedule};
+pub use ppo::{AdvantageNormalization, KlSettle, PpoConfig, RateSchedule};
 
 /// A value that learning cannot work with.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -31,6 +31,8 @@ pub struct Rows<'a> {
     pub mirrored: &'a [f32],
     /// Share of each minibatch that is taken from them.
     pub mirrored_share: f32,
+    /// Mean KL divergence that the rate is steered to.
+    pub kl_target: f32,
     /// `[row][23]`
     pub actions: &'a [f32],
     /// Mean actions of the policy that acted, `[row][23]`.
@@ -205,7 +207,7 @@ impl Ppo {
         self.order = order;
         self.check_weights()?;
         if self.config.schedule == RateSchedule::PerIteration {
-            self.follow(figures.kl);
+            self.follow(figures.kl, rows.kl_target);
         }
         for figure in [
             &mut figures.surrogate,
@@ -246,7 +248,8 @@ impl Ppo {
         }
         let norm = self.check(&mut total)?;
         if self.config.schedule == RateSchedule::PerMinibatch {
-            self.follow(total.kl / total.kl_rows.max(1) as f64);
+            let kl = total.kl / total.kl_rows.max(1) as f64;
+            self.follow(kl, minibatch.rows.kl_target);
         }
         self.adam
             .step(&mut self.weights, &total.gradient, self.rate);
@@ -297,12 +300,9 @@ impl Ppo {
         }
     }
 
-    /// Moves the rate one factor toward the KL target, if KL is outside the band.
-    fn follow(&mut self, kl: f64) {
-        let (target, band) = (
-            f64::from(self.config.kl_target),
-            f64::from(self.config.kl_band),
-        );
+    /// Moves the rate one factor toward the KL `target`, if KL is outside the band.
+    fn follow(&mut self, kl: f64, target: f32) {
+        let (target, band) = (f64::from(target), f64::from(self.config.kl_band));
         if kl > target * band {
             self.rate /= self.config.rate_factor;
         } else if kl < target / band {

@@ -119,6 +119,7 @@ impl LearnerBench {
             observations: &observations,
             mirrored: &observations,
             mirrored_share: config.ppo.mirrored_share,
+            kl_target: config.ppo.kl_target,
             actions: &actions,
             means: &means,
             log_probs: &log_probs,

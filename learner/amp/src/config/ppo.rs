@@ -31,6 +31,9 @@ pub struct PpoConfig {
     pub schedule: RateSchedule,
     /// Mean KL divergence of the last epoch that the rate is steered to. The recipe's.
     pub kl_target: f32,
+    /// That target shrinks later on, so that the last policies of a long run hardly differ. Default: it never does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kl_settle: Option<KlSettle>,
     /// The rate changes when KL leaves [target / band, target · band].
     pub kl_band: f32,
     /// Factor of one change. The recipe's.
@@ -57,6 +60,18 @@ pub struct PpoConfig {
     /// Threads that rows are divided among. Sums are made in their order, so that results depend on this number and not
     /// on the machine.
     pub threads: usize,
+}
+
+/// `[ppo.kl_settle]`: how [`PpoConfig::kl_target`] moves to another.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct KlSettle {
+    /// Samples of the run until which nothing changes.
+    pub from_samples: f64,
+    /// Samples from which on it is `target`; between the two it moves on a straight line of its logarithm.
+    pub to_samples: f64,
+    /// Mean KL divergence at the end.
+    pub target: f32,
 }
 
 /// Choices of [`PpoConfig::schedule`].
@@ -98,6 +113,7 @@ impl Default for PpoConfig {
             learning_rate: 3e-4,
             schedule: RateSchedule::PerIteration,
             kl_target: 0.025,
+            kl_settle: None,
             kl_band: 1.5,
             rate_factor: 1.3,
             min_learning_rate: 1e-5,
@@ -127,6 +143,15 @@ impl PpoConfig {
         self.mirrored_share * rest as f32
     }
 
+    /// Mean KL divergence that the rate is steered to after `samples`.
+    pub fn kl_target_at(&self, samples: u64) -> f32 {
+        self.kl_settle.map_or(self.kl_target, |settle| {
+            let length = settle.to_samples - settle.from_samples;
+            let progress = ((samples as f64 - settle.from_samples) / length).clamp(0.0, 1.0);
+            self.kl_target * (settle.target / self.kl_target).powf(progress as f32)
+        })
+    }
+
     /// Refuses the first value that learning cannot work with.
     pub fn validate(&self) -> Result<(), ConfigError> {
         Check(Ok(()))
@@ -141,6 +166,19 @@ impl PpoConfig {
             .count("minibatch", self.minibatch, 1 << 24)
             .positive("learning_rate", self.learning_rate)
             .positive("kl_target", self.kl_target)
+            .positive(
+                "kl_settle.target",
+                self.kl_settle.map_or(1.0, |settle| settle.target),
+            )
+            .that(
+                self.kl_settle.is_none_or(|settle| {
+                    let (from, to) = (settle.from_samples, settle.to_samples);
+                    0.0 <= from && from < to && to.is_finite()
+                }),
+                "kl_settle.to_samples",
+                self.kl_settle.map_or(0.0, |settle| settle.to_samples),
+                "use more samples than from_samples, and that 0 or more",
+            )
             .that(
                 self.kl_band >= 1.0,
                 "kl_band",
@@ -193,5 +231,35 @@ mod tests {
         assert!(refused.contains("mirrored_fade"), "{refused}");
         ppo.mirrored_fade = None;
         assert_eq!(ppo.mirrored_share_at(u64::MAX), 0.5);
+    }
+
+    #[test]
+    fn the_kl_target_settles() {
+        let mut ppo = PpoConfig {
+            kl_target: 0.04,
+            kl_settle: Some(KlSettle {
+                from_samples: 1e6,
+                to_samples: 3e6,
+                target: 0.01,
+            }),
+            ..PpoConfig::default()
+        };
+        // Halfway on the logarithmic line: √(0.04·0.01) = 0.02
+        let at = [0, 1_000_000, 2_000_000, 3_000_000, u64::MAX];
+        for (samples, expected) in at.into_iter().zip([0.04, 0.04, 0.02, 0.01, 0.01]) {
+            let found = ppo.kl_target_at(samples);
+            assert!((found - expected).abs() < 1e-7, "{samples}: {found}");
+        }
+        for (from_samples, target) in [(3e6, 0.01), (-1.0, 0.01), (1e6, 0.0)] {
+            ppo.kl_settle = Some(KlSettle {
+                from_samples,
+                to_samples: 3e6,
+                target,
+            });
+            let refused = ppo.validate().expect_err("no schedule").to_string();
+            assert!(refused.contains("kl_settle"), "{refused}");
+        }
+        ppo.kl_settle = None;
+        assert_eq!(ppo.kl_target_at(u64::MAX), 0.04);
     }
 }

@@ -170,6 +170,7 @@ impl Learning {
             observations: &scratch.observations,
             mirrored: &scratch.mirrored_scaled,
             mirrored_share: self.config.ppo.mirrored_share_at(self.core.samples),
+            kl_target: self.config.ppo.kl_target_at(self.core.samples),
             actions: &batch.actions,
             means: &batch.means,
             log_probs: &batch.log_probs,

@@ -87,6 +87,7 @@ impl Bandit {
             observations: &self.observations,
             mirrored: &self.observations,
             mirrored_share: 0.0,
+            kl_target: config().ppo.kl_target,
             actions: &self.actions,
             means: &self.means,
             log_probs: &self.log_probs,
@@ -218,16 +219,16 @@ fn the_rate_follows_the_divergence() {
     config.ppo.schedule = RateSchedule::PerIteration;
     let rate = |kl| {
         let mut ppo = ppo(&config);
-        ppo.follow(kl);
+        ppo.follow(kl, 0.025);
         ppo.rate()
     };
-    // target 0.025, band 1.5, factor 1.3
+    // band 1.5, factor 1.3
     assert!((rate(0.05) - 1e-3 / 1.3).abs() < 1e-9);
     assert!((rate(0.01) - 1.3e-3).abs() < 1e-9);
     assert_eq!(rate(0.03), 1e-3);
     config.ppo.max_learning_rate = 1.1e-3;
     let mut ppo = ppo(&config);
-    ppo.follow(0.0);
+    ppo.follow(0.0, 0.025);
     assert_eq!(ppo.rate(), 1.1e-3);
 }
 
