@@ -10,77 +10,95 @@ use crate::failure::usage;
 /// What all methods that are meant to walk begin from.
 const RECIPE: &str = include_str!("../../presets/recipe.toml");
 
-/// Every direction; also what its second stage begins from.
+/// Every direction; also what its further stages begin from.
 const AGILE: &str = include_str!("../../presets/agile.toml");
+
+/// Forward at any speed, with flight; also what its stage under Table I begins from.
+const RUNNER: &str = include_str!("../../presets/runner.toml");
 
 /// One of ours: part of the program, so it needs no folder beside it.
 struct Embedded {
     name: &'static str,
     text: &'static str,
-    /// What it lies on top of.
-    on: Option<&'static str>,
+    /// What it lies on top of, the lowest first.
+    on: &'static [&'static str],
 }
 
-const EMBEDDED: [Embedded; 12] = [
+const EMBEDDED: [Embedded; 15] = [
     Embedded {
         name: "ampco",
         text: include_str!("../../presets/ampco.toml"),
-        on: Some(RECIPE),
+        on: &[RECIPE],
     },
     Embedded {
         name: "ampco-literal",
         text: include_str!("../../presets/ampco-literal.toml"),
-        on: None,
+        on: &[],
     },
     Embedded {
         name: "amp-0.5",
         text: include_str!("../../presets/amp-0.5.toml"),
-        on: Some(RECIPE),
+        on: &[RECIPE],
     },
     Embedded {
         name: "amp-0.7",
         text: include_str!("../../presets/amp-0.7.toml"),
-        on: Some(RECIPE),
+        on: &[RECIPE],
     },
     Embedded {
         name: "amp-0.8",
         text: include_str!("../../presets/amp-0.8.toml"),
-        on: Some(RECIPE),
+        on: &[RECIPE],
     },
     Embedded {
         name: "adamimic",
         text: include_str!("../../presets/adamimic.toml"),
-        on: Some(RECIPE),
+        on: &[RECIPE],
     },
     Embedded {
         name: "amp-roger",
         text: include_str!("../../presets/amp-roger.toml"),
-        on: Some(RECIPE),
+        on: &[RECIPE],
     },
     Embedded {
         name: "ampco-without-aig",
         text: include_str!("../../presets/ampco-without-aig.toml"),
-        on: Some(RECIPE),
+        on: &[RECIPE],
     },
     Embedded {
         name: "ampco-without-roger",
         text: include_str!("../../presets/ampco-without-roger.toml"),
-        on: Some(RECIPE),
+        on: &[RECIPE],
     },
     Embedded {
         name: "agile",
         text: AGILE,
-        on: None,
+        on: &[],
     },
     Embedded {
         name: "robust",
         text: include_str!("../../presets/robust.toml"),
-        on: Some(AGILE),
+        on: &[AGILE],
+    },
+    Embedded {
+        name: "sprint",
+        text: include_str!("../../presets/sprint.toml"),
+        on: &[AGILE],
+    },
+    Embedded {
+        name: "runner",
+        text: RUNNER,
+        on: &[AGILE],
+    },
+    Embedded {
+        name: "runner-robust",
+        text: include_str!("../../presets/runner-robust.toml"),
+        on: &[AGILE, RUNNER],
     },
     Embedded {
         name: "smoke",
         text: include_str!("../../presets/smoke.toml"),
-        on: None,
+        on: &[],
     },
 ];
 
@@ -94,7 +112,11 @@ impl Embedded {
     /// What it lies on top of; nothing if that are the defaults alone.
     fn beneath(&self) -> Result<Config> {
         let name = format!("what preset {} begins from", self.name);
-        Ok(Config::parse(self.on.unwrap_or_default(), &name)?)
+        let mut config = Config::default();
+        for text in self.on {
+            config.merge(Config::parse(text, &name)?);
+        }
+        Ok(config)
     }
 }
 
@@ -165,14 +187,15 @@ mod tests {
         // The default is "one per core"; what that comes to is this machine's business.
         defaults.put("fleet.actors", 0, "the test");
         for preset in &EMBEDDED {
-            let own = Config::parse(preset.text, "its own").unwrap();
-            let beneath = preset.beneath().unwrap();
-            for (config, below) in [(&own, &beneath), (&beneath, &Config::default())] {
-                for path in config.paths() {
-                    let given = config.given(path);
+            let mut below = Config::default();
+            for text in preset.on.iter().chain([&preset.text]) {
+                let layer = Config::parse(text, "a layer").unwrap();
+                for path in layer.paths() {
+                    let given = layer.given(path);
                     let before = below.given(path).or_else(|| defaults.given(path));
                     assert_ne!(given, before, "preset {}: {path}", preset.name);
                 }
+                below.merge(layer);
             }
         }
     }
