@@ -58,9 +58,25 @@ impl Runs {
     }
 }
 
+impl Drop for Runs {
+    /// What a supervisor would clean up: tests kill theirs, and end processes that never had one. Members
+    /// of a killed group take a moment to be gone.
+    fn drop(&mut self) {
+        for entry in fs::read_dir(self.path()).into_iter().flatten().flatten() {
+            let Ok(domain) = protocol::Domain::for_run(&entry.path()) else {
+                continue;
+            };
+            let deadline = Instant::now() + Duration::from_secs(5);
+            while domain.remove().is_err() && Instant::now() < deadline {
+                thread::sleep(GLANCE);
+            }
+        }
+    }
+}
+
 /// A run's folder in which single processes are started by hand, without a supervisor.
 pub(crate) struct Alone {
-    runs: Runs,
+    _runs: Runs,
     folder: run::Folder,
 }
 
@@ -76,7 +92,10 @@ impl Alone {
         config
             .write(&folder.config_path(), "test")
             .expect("written");
-        Self { runs, folder }
+        Self {
+            _runs: runs,
+            folder,
+        }
     }
 
     pub(crate) fn path(&self) -> &Path {
@@ -96,16 +115,6 @@ impl Alone {
         let mut command = Command::new(program(name));
         command.arg("--run-dir").arg(self.path()).args(arguments);
         Process::start(command)
-    }
-}
-
-impl Drop for Alone {
-    /// What a supervisor would clean up.
-    fn drop(&mut self) {
-        if let Ok(domain) = protocol::Domain::for_run(self.path()) {
-            let _ = domain.remove();
-        }
-        let _ = &self.runs;
     }
 }
 
