@@ -2,7 +2,7 @@
 //!
 //! Cargo joins the features that a workspace's crates ask for. A dependency of tests alone that
 //! switches on one more feature of a library deep down has that library, and everything above it,
-//! built a second time: burn took minutes and gigabytes twice, until a disk was full.
+//! built a second time: burn once was, for minutes, until a disk was full.
 
 use crate::harness::{finish, repository};
 use std::collections::BTreeSet;

@@ -21,7 +21,7 @@ pub struct SingleStanceConfig {
     pub seconds: f32,
     /// Commanded forward speed from which a run is asked for, m/s: then how long a foot has been in the air
     /// counts, whether the other stands or not. Default: never. Robots walk at 2 m/s, though the clips there
-    /// run. With this they ran once they were told nothing else for a while, and style counted little.
+    /// run. With this they ran once they were told nothing else, and went on with it while style counted little.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub run_from: Option<f32>,
 }

@@ -2,6 +2,7 @@
 
 use crate::config::{ExplorationConfig, ExplorationKind};
 use crate::robot::JointGroup;
+use crate::schedule;
 
 /// Standard deviation σ of each joint's action after `samples`.
 ///
@@ -44,16 +45,14 @@ fn factor(config: &ExplorationConfig, joint: JointGroup) -> f32 {
 }
 
 fn scheduled(config: &ExplorationConfig, samples: u64) -> f32 {
-    let (hold, end) = (config.hold_samples, config.final_samples);
-    let samples = samples as f64;
-    if samples <= hold {
-        return config.initial_sigma;
-    }
-    if samples >= end {
-        return config.final_sigma;
-    }
-    let progress = ((samples - hold) / (end - hold)) as f32;
-    config.initial_sigma * (config.final_sigma / config.initial_sigma).powf(progress)
+    let (first, last) = (config.initial_sigma, config.final_sigma);
+    schedule::logarithmic(
+        first,
+        last,
+        config.hold_samples,
+        config.final_samples,
+        samples,
+    )
 }
 
 #[cfg(test)]

@@ -41,6 +41,7 @@ pub mod replay;
 mod report;
 pub mod robot;
 mod saved;
+mod schedule;
 pub mod style;
 pub mod surrogate;
 pub mod window;

@@ -1,6 +1,7 @@
 //! `[ppo]`: how the policy is improved.
 
 use super::{Check, ConfigError};
+use crate::schedule;
 use serde::{Deserialize, Serialize};
 
 /// `[ppo]`: how the policy is improved.
@@ -146,9 +147,8 @@ impl PpoConfig {
     /// Mean KL divergence that the rate is steered to after `samples`.
     pub fn kl_target_at(&self, samples: u64) -> f32 {
         self.kl_settle.map_or(self.kl_target, |settle| {
-            let length = settle.to_samples - settle.from_samples;
-            let progress = ((samples as f64 - settle.from_samples) / length).clamp(0.0, 1.0);
-            self.kl_target * (settle.target / self.kl_target).powf(progress as f32)
+            let (from, to) = (settle.from_samples, settle.to_samples);
+            schedule::logarithmic(self.kl_target, settle.target, from, to, samples)
         })
     }
 
