@@ -24,7 +24,19 @@ pub struct SingleStanceConfig {
     /// run. With this they ran once they were told nothing else, and went on with it while style counted little.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub run_from: Option<f32>,
+    /// Part of a run's pay that is for flight itself, all of it for 60 ms between one foot's lift-off and the other's
+    /// landing. Default 0: then a walk of long steps earns as much as a run, and beside other commands runs became
+    /// walks again.
+    #[serde(skip_serializing_if = "is_nothing")]
+    pub flight: f32,
 }
+
+fn is_nothing(share: &f32) -> bool {
+    *share == 0.0
+}
+
+/// Flight for which all of [`SingleStanceConfig::flight`] is paid, s: a fifth of a step at three steps a second.
+const FLIGHT: f32 = 0.06;
 
 impl Default for SingleStanceConfig {
     fn default() -> Self {
@@ -32,6 +44,7 @@ impl Default for SingleStanceConfig {
             share: 0.3,
             seconds: 0.4,
             run_from: None,
+            flight: 0.0,
         }
     }
 }
@@ -41,6 +54,7 @@ impl SingleStanceConfig {
     pub fn validate(&self) -> Result<(), Invalid> {
         config::share("single_stance.share", self.share)?;
         config::at_least("single_stance.seconds", self.seconds, CONTROL_STEP)?;
+        config::share("single_stance.flight", self.flight)?;
         self.run_from.map_or(Ok(()), |speed| {
             config::at_least("single_stance.run_from", speed, 0.5)
         })
@@ -48,8 +62,8 @@ impl SingleStanceConfig {
 
     /// Factor of the task reward, 1 − s·(1 − p) with p = min(t/T, 1) up to t = 2·T and 0 beyond. t is how
     /// long the feet have been as they are, the shorter of the two, if just one of them stands, and 0
-    /// otherwise; of a run, how long the foot that was lifted first is in the air. 1 for who is told to
-    /// stand. Without the end at 2·T those told to turn on the spot stood on one leg.
+    /// otherwise; of a run, how long the foot that was lifted first is in the air, and then f of p is
+    /// min(flight/60 ms, 1) instead. 1 for who is told to stand. Without the end at 2·T those told to turn on the spot stood on one leg.
     pub(crate) fn factor(&self, command: &[f32; 3], feet: &Footing) -> f32 {
         if *command == [0.0; 3] {
             return 1.0;
@@ -61,7 +75,10 @@ impl SingleStanceConfig {
             feet.single_stance()
         };
         let share = time / self.seconds;
-        let paid = if share > 2.0 { 0.0 } else { share.min(1.0) };
+        let mut paid = if share > 2.0 { 0.0 } else { share.min(1.0) };
+        if runs {
+            paid += self.flight * ((feet.flight() / FLIGHT).min(1.0) - paid);
+        }
         1.0 - self.share * (1.0 - paid)
     }
 }
@@ -101,6 +118,19 @@ impl Footing {
     fn swing(&self) -> f32 {
         let aloft = |foot: usize| if self.down[foot] { 0 } else { self.steps[foot] };
         aloft(0).max(aloft(1)) as f32 * CONTROL_STEP
+    }
+
+    /// How long both feet have been in the air, or were before the one that stands came down, s; 0 with
+    /// both on the ground, or if the other was lifted only after that.
+    fn flight(&self) -> f32 {
+        let [left, right] = self.steps;
+        let steps = match self.down {
+            [false, false] => left.min(right),
+            [true, false] => right.saturating_sub(left),
+            [false, true] => left.saturating_sub(right),
+            [true, true] => 0,
+        };
+        steps as f32 * CONTROL_STEP
     }
 }
 
@@ -160,6 +190,48 @@ mod tests {
     }
 
     #[test]
+    fn flight_pays_until_the_next_foot_is_lifted_and_a_walk_has_none() {
+        let config = SingleStanceConfig {
+            share: 1.0,
+            run_from: Some(1.8),
+            flight: 1.0,
+            ..SingleStanceConfig::default()
+        };
+        let mut feet = Footing::default();
+        let mut paid = |forces, count| {
+            (0..count).for_each(|_| feet.step(forces));
+            [1.7, 1.8].map(|speed| config.factor(&[speed, 0.0, 0.0], &feet))[1]
+        };
+        let close = |got: f32, expected: f32| assert!((got - expected).abs() < 1e-6, "{got}");
+        close(paid(BOTH, 9), 0.0);
+        close(paid(LEFT, 10), 0.0);
+        // The left foot follows: 20 ms and 40 ms of 60.
+        close(paid(NONE, 1), 1.0 / 3.0);
+        close(paid(NONE, 1), 2.0 / 3.0);
+        // Whoever lands after that has flown for as long, and for nothing more.
+        close(paid(RIGHT, 12), 2.0 / 3.0);
+        close(paid(NONE, 5), 1.0);
+        close(paid(LEFT, 3), 1.0);
+        // Down with both, and off with one: a walk again.
+        close(paid(BOTH, 1), 0.0);
+        close(paid(RIGHT, 8), 0.0);
+    }
+
+    #[test]
+    fn a_part_of_a_run_is_paid_for_flight() {
+        let config = SingleStanceConfig {
+            run_from: Some(1.8),
+            flight: 0.5,
+            ..SingleStanceConfig::default()
+        };
+        let mut feet = Footing::default();
+        (0..10).for_each(|_| feet.step(LEFT));
+        // Half of 0.4 s pays half of the share, of which half is for flight at a run: none yet.
+        let factors = [1.7, 1.8].map(|speed| config.factor(&[speed, 0.0, 0.0], &feet));
+        assert!((factors[0] - 0.85).abs() < 1e-6 && (factors[1] - 0.775).abs() < 1e-6);
+    }
+
+    #[test]
     fn who_is_told_to_stand_is_not_asked_to_lift_a_foot() {
         let feet = Footing::default();
         let config = SingleStanceConfig::default();
@@ -174,6 +246,7 @@ mod tests {
                 share,
                 seconds,
                 run_from: Some(0.2),
+                flight: 0.0,
             };
             config.validate().unwrap_err().to_string()
         };
