@@ -19,5 +19,6 @@ mod pressure;
 mod repeat;
 mod schedule;
 mod soak;
+mod stages;
 mod study;
 mod watch;

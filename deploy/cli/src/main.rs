@@ -20,6 +20,7 @@ mod plot;
 mod presets;
 mod resolve;
 mod soak;
+mod stages;
 mod status;
 mod study;
 mod supervise;
@@ -41,6 +42,7 @@ Examples:
   ampco train --run walk --resume --minutes 20    twenty more, from the last checkpoint
   ampco train --preset amp-0.5 --set seed=7       another method, another seed
   ampco train --set task.kernel=2.0               any key of the configuration
+  ampco stages runner                             three runs in a row: it ends with one that runs
   ampco status                                    the newest run: how it is going
   ampco actor --run walk                          lend another core to a running group
   ampco evaluate walk --command 0.8,0,0 --json    how well the policy walks
@@ -67,6 +69,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Train(train::Train),
+    Stages(stages::Stages),
     Actor(actor::AddActor),
     Status(status::Status),
     Evaluate(evaluate::Evaluate),
@@ -85,6 +88,7 @@ fn main() -> ExitCode {
     let _ = run::log::init_console();
     let done = match arguments.command {
         Command::Train(train) => train.run(),
+        Command::Stages(stages) => stages.run(),
         Command::Actor(actor) => actor.run(),
         Command::Status(status) => status.run(),
         Command::Evaluate(evaluate) => evaluate.run(),

@@ -1,0 +1,292 @@
+//! From a file of stages to runs whose every value is known before anything starts.
+
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use run::Config;
+use serde::Deserialize;
+
+use crate::failure::usage;
+use crate::{presets, resolve};
+
+/// Those that come with the program, by name.
+const EMBEDDED: [(&str, &str); 3] = [
+    ("robust", include_str!("../../../stages/robust.toml")),
+    ("runner", include_str!("../../../stages/runner.toml")),
+    (
+        "runner-robust",
+        include_str!("../../../stages/runner-robust.toml"),
+    ),
+];
+
+/// A file of stages as its author wrote it.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    /// What comes of it, in one line.
+    title: String,
+    stages: Vec<Stage>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Stage {
+    /// Last part of the run's name.
+    name: String,
+    /// A preset's name, or a file beside this one. Default: the stage's name.
+    preset: Option<String>,
+    /// Length of the run.
+    iterations: u32,
+    /// What differs from the preset, as of `ampco train --set`.
+    #[serde(default)]
+    set: Vec<String>,
+}
+
+/// A stage with all that it is trained with.
+#[derive(Debug)]
+pub(super) struct Planned {
+    /// Name of its run.
+    pub(super) run: String,
+    /// As for `ampco train --preset`.
+    pub(super) preset: String,
+    pub(super) iterations: u32,
+    pub(super) set: Vec<String>,
+    /// Every value, defaults included.
+    pub(super) config: Config,
+    /// Transitions of an iteration.
+    rows: u64,
+}
+
+/// The stages in their order.
+#[derive(Debug)]
+pub(super) struct Plan {
+    title: String,
+    pub(super) actors: Option<u32>,
+    pub(super) stages: Vec<Planned>,
+}
+
+impl Plan {
+    /// Of one of ours or a file. Everything is looked at, so that the fifth stage's mistake costs no hour.
+    pub(super) fn new(
+        which: &str,
+        run: Option<&str>,
+        actors: Option<u32>,
+        set: &[String],
+    ) -> Result<Self> {
+        let path = Path::new(which);
+        let own = EMBEDDED.iter().find(|(name, _)| *name == which);
+        let (text, beside) = match own {
+            Some((_, text)) => ((*text).to_owned(), None),
+            None if path.is_file() => {
+                let text = std::fs::read_to_string(path);
+                let text = text.with_context(|| format!("reading {which}"))?;
+                (text, Some(path.parent().unwrap_or(Path::new("."))))
+            }
+            None => {
+                let names = EMBEDDED.map(|(name, _)| name);
+                let remedy = run::nearest::remedy(which, &names);
+                return Err(usage(format!(
+                    "there are no stages and no file `{which}`; {remedy}"
+                )));
+            }
+        };
+        let file = parse(&text).map_err(|problem| usage(format!("{which}: {problem}")))?;
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let stem = run.unwrap_or(&stem);
+        let stages = file.stages.iter().map(|stage| {
+            let planned = stage.planned(stem, beside, actors, set);
+            planned.with_context(|| format!("{which}: stage {}", stage.name))
+        });
+        Ok(Self {
+            title: file.title,
+            actors,
+            stages: stages.collect::<Result<_>>()?,
+        })
+    }
+
+    /// What would be run, for --dry-run.
+    pub(super) fn describe(&self) -> String {
+        let mut lines = vec![self.title.clone()];
+        for stage in &self.stages {
+            lines.push(format!(
+                "{}: preset {}{}, {} iterations of {} transitions",
+                stage.run,
+                stage.preset,
+                stage
+                    .set
+                    .iter()
+                    .fold(String::new(), |all, one| all + " " + one),
+                stage.iterations,
+                stage.rows,
+            ));
+        }
+        let all: u64 = self
+            .stages
+            .iter()
+            .map(|stage| u64::from(stage.iterations) * stage.rows)
+            .sum();
+        lines.push(format!("{} runs, {all} transitions", self.stages.len()));
+        lines.join("\n")
+    }
+}
+
+impl Stage {
+    fn planned(
+        &self,
+        stem: &str,
+        beside: Option<&Path>,
+        actors: Option<u32>,
+        set: &[String],
+    ) -> Result<Planned> {
+        let preset = self.preset.as_deref().unwrap_or(&self.name);
+        let own = beside.map(|folder| folder.join(preset));
+        let own = own.filter(|path| path.is_file());
+        let preset = own.map_or(preset.to_owned(), |path| path.display().to_string());
+        let set: Vec<String> = self.set.iter().chain(set).cloned().collect();
+        let found = presets::find(&preset)?;
+        let mut config = found.config;
+        for assignment in &set {
+            config.set(assignment)?;
+        }
+        config.put("run.iterations", i64::from(self.iterations), "iterations");
+        config.put("run.minutes", 0.0, "iterations");
+        if let Some(actors) = actors {
+            config.put("fleet.actors", i64::from(actors), "--actors");
+        }
+        let file = Path::new(&preset).canonicalize().ok();
+        let file = file.map(|path| path.display().to_string());
+        resolve::anchor_files(&mut config, file.as_deref().zip(found.folder.as_deref()))?;
+        let fleet = resolve::resolve(&mut config)?.fleet;
+        Ok(Planned {
+            run: format!("{stem}-{}", self.name),
+            preset,
+            iterations: self.iterations,
+            set,
+            config,
+            rows: (fleet.actors * fleet.environments_per_actor() * fleet.steps) as u64,
+        })
+    }
+}
+
+impl Planned {
+    /// The first line of a run's configuration that is not what this stage would give it, and what it would give.
+    pub(super) fn differs_from(&self, theirs: &Config) -> Option<(String, String)> {
+        // Where a run began is known only once the stage before has ended.
+        let lines = |config: &Config| -> Vec<String> {
+            let text = config.to_toml();
+            let lines = text.lines().filter(|line| !line.starts_with("from = "));
+            lines.map(str::to_owned).collect()
+        };
+        let (theirs, ours) = (lines(theirs), lines(&self.config));
+        let longest = theirs.len().max(ours.len());
+        let line = |lines: &[String], i: usize| lines.get(i).cloned().unwrap_or_default();
+        (0..longest)
+            .map(|i| (line(&theirs, i), line(&ours, i)))
+            .find(|(theirs, ours)| theirs != ours)
+    }
+}
+
+/// Those that come with the program, a line each.
+pub(super) fn list() -> String {
+    let line = |(name, text): &(&str, &str)| match parse(text) {
+        Ok(file) => {
+            let stages: Vec<_> = file
+                .stages
+                .iter()
+                .map(|stage| stage.name.as_str())
+                .collect();
+            format!("{name}: {} ({})", file.title, stages.join(", "))
+        }
+        Err(problem) => format!("{name}: {problem}"),
+    };
+    EMBEDDED.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+fn parse(text: &str) -> Result<File, String> {
+    let file: File = toml::from_str(text).map_err(|error| error.to_string())?;
+    if file.stages.is_empty() {
+        return Err("stages: none; write at least one".into());
+    }
+    for (i, stage) in file.stages.iter().enumerate() {
+        let name = &stage.name;
+        if stage.iterations == 0 {
+            return Err(format!("stage {name}: iterations = 0; a stage has to end"));
+        }
+        if file.stages[..i].iter().any(|other| other.name == *name) {
+            return Err(format!(
+                "stage {name}: there are two; give one another name"
+            ));
+        }
+    }
+    Ok(file)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn those_of_ours_can_all_be_run() {
+        for (name, _) in EMBEDDED {
+            let plan = Plan::new(name, None, Some(2), &[]).unwrap();
+            assert!(plan.stages.len() > 1, "{name}");
+            let last = plan.stages.last().unwrap();
+            assert_eq!(last.run, format!("{name}-{name}"));
+            assert!(plan.describe().ends_with("transitions"), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_file_of_stages_has_presets_beside_it_and_values_of_its_own() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("mine.toml"), "[task]\nkernel = 5.0\n").unwrap();
+        let path = folder.path().join("two.toml");
+        let text = "title = \"Two\"\n\
+            [[stages]]\nname = \"smoke\"\niterations = 3\n\
+            [[stages]]\nname = \"b\"\npreset = \"mine.toml\"\niterations = 4\nset = [\"ppo.epochs=9\"]\n";
+        std::fs::write(&path, text).unwrap();
+        let set = ["seed=7".to_owned(), "ppo.epochs=3".to_owned()];
+        let plan = Plan::new(path.to_str().unwrap(), Some("x"), Some(2), &set).unwrap();
+        let number = |stage: usize, key: &str| {
+            let value = plan.stages[stage].config.given(key).unwrap();
+            value
+                .as_float()
+                .or(value.as_integer().map(|x| x as f64))
+                .unwrap()
+        };
+        assert_eq!(
+            [plan.stages[0].run.as_str(), &plan.stages[1].run],
+            ["x-smoke", "x-b"]
+        );
+        assert_eq!(
+            [number(0, "run.iterations"), number(1, "run.iterations")],
+            [3.0, 4.0]
+        );
+        assert_eq!(number(1, "task.kernel"), 5.0);
+        assert_eq!([number(0, "run.seed"), number(1, "run.seed")], [7.0, 7.0]);
+        // What was typed goes before what the file says.
+        assert_eq!(number(1, "ppo.epochs"), 3.0);
+        // Of a run folder only where it began may differ.
+        let mut theirs = Config::parse(&plan.stages[1].config.to_toml(), "theirs").unwrap();
+        theirs.put("run.from", "/somewhere", "theirs");
+        assert_eq!(plan.stages[1].differs_from(&theirs), None);
+        theirs.put("task.kernel", 6.0, "theirs");
+        let differs = plan.stages[1].differs_from(&theirs).unwrap();
+        assert_eq!(
+            differs,
+            ("kernel = 6.0".to_owned(), "kernel = 5.0".to_owned())
+        );
+    }
+
+    #[test]
+    fn mistakes_are_named_with_the_stage() {
+        let problem = |stages: &str| parse(&format!("title = \"t\"\n{stages}")).unwrap_err();
+        let stage = "[[stages]]\nname = \"a\"\niterations = 1\n";
+        assert!(problem("stages = []").contains("at least one"));
+        assert!(problem(&stage.repeat(2)).contains("stage a: there are two"));
+        assert!(problem(&stage.replace('1', "0")).contains("iterations = 0"));
+        assert!(problem(&format!("{stage}itrations = 2")).contains("itrations"));
+        let unknown = Plan::new("runer", None, None, &[]).unwrap_err().to_string();
+        assert!(unknown.contains("did you mean `runner`?"), "{unknown}");
+    }
+}
