@@ -1,0 +1,78 @@
+//! Where episodes begin and how they end.
+
+use super::*;
+
+#[test]
+fn timeouts_are_staggered_and_then_a_full_episode_apart() {
+    let task = TaskConfig {
+        episode_steps: 12,
+        start: StartConfig {
+            reference_share: 0.0,
+            ..StartConfig::default()
+        },
+        ..TaskConfig::default()
+    };
+    let count = |staggered: bool| {
+        let task = TaskConfig {
+            staggered,
+            ..task.clone()
+        };
+        let mut fleet = fleet(&task, &RandomizationConfig::none(), 6, 2);
+        let mut ended = vec![Vec::new(); 6];
+        for t in 1..=24 {
+            let out = step(&mut fleet, &[0.0; 6 * ACTION]);
+            for (i, times) in ended.iter_mut().enumerate() {
+                if out.ends[i] != 0.0 {
+                    assert_eq!(out.ends[i], 2.0, "standing for ¼ s is no fall");
+                    times.push(t);
+                }
+            }
+        }
+        ended
+    };
+    assert!(count(false).iter().all(|times| times == &[12, 24]));
+    let staggered = count(true);
+    for times in &staggered {
+        assert!((1..=12).contains(&times[0]));
+        assert_eq!(times[1], times[0] + 12);
+    }
+    assert!(staggered.iter().any(|times| times[0] != staggered[0][0]));
+}
+
+#[test]
+fn limp_robots_fall_and_their_episode_ends() {
+    let mut gains = Gains::of_the_robot();
+    gains.effort = [0.0; JOINTS];
+    let task = TaskConfig::default();
+    let none = RandomizationConfig::none();
+    let mut fleet = Fleet::with_gains(&task, &none, Starts::default(), 1, 4, gains).unwrap();
+    let fall = (0..100)
+        .map(|_| step(&mut fleet, &[0.0; ACTION]))
+        .find(|out| out.ends[0] != 0.0)
+        .expect("falls within 2 s");
+    assert_eq!(fall.ends[0], 1.0);
+    let (height, last) = (fall.next_features[0], &fall.next_features);
+    assert!(
+        height < 0.55 || last.iter().all(|x| x.is_finite()),
+        "{height}"
+    );
+    assert_eq!(fall.energies[0], 0.0); // no current, no work
+}
+
+#[test]
+fn starts_match_their_clip_in_the_share_asked_for() {
+    for share in [0.0, 1.0] {
+        let task = TaskConfig {
+            command: CommandConfig {
+                forward: [1.0, 1.2],
+                matched_share: share,
+                ..CommandConfig::default()
+            },
+            ..TaskConfig::default()
+        };
+        let fleet = fleet(&task, &RandomizationConfig::none(), 20, 1);
+        for i in 0..20 {
+            assert_eq!(fleet.command(i) == [0.8, 0.0, 0.0], share == 1.0);
+        }
+    }
+}
