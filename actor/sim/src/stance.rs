@@ -24,7 +24,7 @@ pub struct SingleStanceConfig {
     /// run. With this they ran once they were told nothing else, and went on with it while style counted little.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub run_from: Option<f32>,
-    /// Part of a run's pay that is for flight itself, all of it for 60 ms between one foot's lift-off and the other's
+    /// Part of a run's pay that is for flight itself, all of it for 40 ms between one foot's lift-off and the other's
     /// landing. Default 0: then a walk of long steps earns as much as a run, and beside other commands runs became
     /// walks again.
     #[serde(skip_serializing_if = "is_nothing")]
@@ -35,8 +35,9 @@ fn is_nothing(share: &f32) -> bool {
     *share == 0.0
 }
 
-/// Flight for which all of [`SingleStanceConfig::flight`] is paid, s: a fifth of a step at three steps a second.
-const FLIGHT: f32 = 0.06;
+/// Flight for which all of [`SingleStanceConfig::flight`] is paid, s: an eighth of a step at three steps a second. Twice
+/// a control step: what a foot touches in part of one counts as touched.
+const FLIGHT: f32 = 0.04;
 
 impl Default for SingleStanceConfig {
     fn default() -> Self {
@@ -63,7 +64,7 @@ impl SingleStanceConfig {
     /// Factor of the task reward, 1 − s·(1 − p) with p = min(t/T, 1) up to t = 2·T and 0 beyond. t is how
     /// long the feet have been as they are, the shorter of the two, if just one of them stands, and 0
     /// otherwise; of a run, how long the foot that was lifted first is in the air, and then f of p is
-    /// min(flight/60 ms, 1) instead. 1 for who is told to stand. Without the end at 2·T those told to turn on the spot stood on one leg.
+    /// min(flight/40 ms, 1) instead. 1 for who is told to stand. Without the end at 2·T those told to turn on the spot stood on one leg.
     pub(crate) fn factor(&self, command: &[f32; 3], feet: &Footing) -> f32 {
         if *command == [0.0; 3] {
             return 1.0;
@@ -205,12 +206,12 @@ mod tests {
         let close = |got: f32, expected: f32| assert!((got - expected).abs() < 1e-6, "{got}");
         close(paid(BOTH, 9), 0.0);
         close(paid(LEFT, 10), 0.0);
-        // The left foot follows: 20 ms and 40 ms of 60.
-        close(paid(NONE, 1), 1.0 / 3.0);
-        close(paid(NONE, 1), 2.0 / 3.0);
+        // The left foot follows: 20 ms of 40.
+        close(paid(NONE, 1), 0.5);
         // Whoever lands after that has flown for as long, and for nothing more.
-        close(paid(RIGHT, 12), 2.0 / 3.0);
-        close(paid(NONE, 5), 1.0);
+        close(paid(RIGHT, 12), 0.5);
+        close(paid(NONE, 2), 1.0);
+        close(paid(NONE, 3), 1.0);
         close(paid(LEFT, 3), 1.0);
         // Down with both, and off with one: a walk again.
         close(paid(BOTH, 1), 0.0);
