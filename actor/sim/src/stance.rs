@@ -29,6 +29,10 @@ pub struct SingleStanceConfig {
     /// walks again.
     #[serde(skip_serializing_if = "is_nothing")]
     pub flight: f32,
+    /// Share of the task reward that who is told to stand loses while a foot is in the air. Default 0: stepping on the
+    /// spot obeys nearly as well, and robots that walk nearly always stayed at it.
+    #[serde(skip_serializing_if = "is_nothing")]
+    pub standing: f32,
 }
 
 fn is_nothing(share: &f32) -> bool {
@@ -46,6 +50,7 @@ impl Default for SingleStanceConfig {
             seconds: 0.4,
             run_from: None,
             flight: 0.0,
+            standing: 0.0,
         }
     }
 }
@@ -56,6 +61,7 @@ impl SingleStanceConfig {
         config::share("single_stance.share", self.share)?;
         config::at_least("single_stance.seconds", self.seconds, CONTROL_STEP)?;
         config::share("single_stance.flight", self.flight)?;
+        config::share("single_stance.standing", self.standing)?;
         self.run_from.map_or(Ok(()), |speed| {
             config::at_least("single_stance.run_from", speed, 0.5)
         })
@@ -64,10 +70,15 @@ impl SingleStanceConfig {
     /// Factor of the task reward, 1 − s·(1 − p) with p = min(t/T, 1) up to t = 2·T and 0 beyond. t is how
     /// long the feet have been as they are, the shorter of the two, if just one of them stands, and 0
     /// otherwise; of a run, how long the foot that was lifted first is in the air, and then f of p is
-    /// min(flight/40 ms, 1) instead. 1 for who is told to stand. Without the end at 2·T those told to turn on the spot stood on one leg.
+    /// min(flight/40 ms, 1) instead. Who is told to stand gets 1 with both feet down, else 1 less `standing`.
+    /// Without the end at 2·T those told to turn on the spot stood on one leg.
     pub(crate) fn factor(&self, command: &[f32; 3], feet: &Footing) -> f32 {
         if *command == [0.0; 3] {
-            return 1.0;
+            return if feet.down == [true; 2] {
+                1.0
+            } else {
+                1.0 - self.standing
+            };
         }
         let runs = self.run_from.is_some_and(|speed| command[0] >= speed);
         let time = if runs {
@@ -241,6 +252,22 @@ mod tests {
     }
 
     #[test]
+    fn who_is_told_to_stand_may_be_asked_to_keep_both_feet_down() {
+        let config = SingleStanceConfig {
+            standing: 0.4,
+            ..SingleStanceConfig::default()
+        };
+        let mut feet = Footing::default();
+        feet.step(BOTH);
+        assert_eq!(config.factor(&[0.0; 3], &feet), 1.0);
+        assert_eq!(config.factor(&[0.0, 0.0, 0.5], &feet), 0.7);
+        for forces in [LEFT, NONE] {
+            feet.step(forces);
+            assert_eq!(config.factor(&[0.0; 3], &feet), 0.6);
+        }
+    }
+
+    #[test]
     fn shares_beyond_all_and_times_of_nothing_are_refused() {
         let refused = |share, seconds| {
             let config = SingleStanceConfig {
@@ -248,6 +275,7 @@ mod tests {
                 seconds,
                 run_from: Some(0.2),
                 flight: 0.0,
+                standing: 0.0,
             };
             config.validate().unwrap_err().to_string()
         };

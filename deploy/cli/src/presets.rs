@@ -16,6 +16,9 @@ const AGILE: &str = include_str!("../../presets/agile.toml");
 /// Forward at any speed, with flight; also what its stage under Table I begins from.
 const RUNNER: &str = include_str!("../../presets/runner.toml");
 
+/// Every direction, and a run; also what its stage under Table I begins from.
+const ATHLETE: &str = include_str!("../../presets/athlete.toml");
+
 /// One of ours: part of the program, so it needs no folder beside it.
 struct Embedded {
     name: &'static str,
@@ -24,7 +27,7 @@ struct Embedded {
     on: &'static [&'static str],
 }
 
-const EMBEDDED: [Embedded; 15] = [
+const EMBEDDED: [Embedded; 17] = [
     Embedded {
         name: "ampco",
         text: include_str!("../../presets/ampco.toml"),
@@ -94,6 +97,16 @@ const EMBEDDED: [Embedded; 15] = [
         name: "runner-robust",
         text: include_str!("../../presets/runner-robust.toml"),
         on: &[AGILE, RUNNER],
+    },
+    Embedded {
+        name: "athlete",
+        text: ATHLETE,
+        on: &[AGILE],
+    },
+    Embedded {
+        name: "athlete-robust",
+        text: include_str!("../../presets/athlete-robust.toml"),
+        on: &[AGILE, ATHLETE],
     },
     Embedded {
         name: "smoke",

@@ -10,7 +10,12 @@ use crate::failure::usage;
 use crate::{presets, resolve};
 
 /// Those that come with the program, by name.
-const EMBEDDED: [(&str, &str); 3] = [
+const EMBEDDED: [(&str, &str); 5] = [
+    ("athlete", include_str!("../../../stages/athlete.toml")),
+    (
+        "athlete-robust",
+        include_str!("../../../stages/athlete-robust.toml"),
+    ),
     ("robust", include_str!("../../../stages/robust.toml")),
     ("runner", include_str!("../../../stages/runner.toml")),
     (
