@@ -13,9 +13,6 @@ const RECIPE: &str = include_str!("../../presets/recipe.toml");
 /// Every direction; also what its further stages begin from.
 const AGILE: &str = include_str!("../../presets/agile.toml");
 
-/// Forward at any speed, with flight; also what its stage under Table I begins from.
-const RUNNER: &str = include_str!("../../presets/runner.toml");
-
 /// Every direction, and a run; also what its stage under Table I begins from.
 const ATHLETE: &str = include_str!("../../presets/athlete.toml");
 
@@ -27,7 +24,7 @@ struct Embedded {
     on: &'static [&'static str],
 }
 
-const EMBEDDED: [Embedded; 17] = [
+const EMBEDDED: [Embedded; 15] = [
     Embedded {
         name: "ampco",
         text: include_str!("../../presets/ampco.toml"),
@@ -79,24 +76,14 @@ const EMBEDDED: [Embedded; 17] = [
         on: &[],
     },
     Embedded {
-        name: "robust",
-        text: include_str!("../../presets/robust.toml"),
-        on: &[AGILE],
-    },
-    Embedded {
         name: "sprint",
         text: include_str!("../../presets/sprint.toml"),
         on: &[AGILE],
     },
     Embedded {
         name: "runner",
-        text: RUNNER,
+        text: include_str!("../../presets/runner.toml"),
         on: &[AGILE],
-    },
-    Embedded {
-        name: "runner-robust",
-        text: include_str!("../../presets/runner-robust.toml"),
-        on: &[AGILE, RUNNER],
     },
     Embedded {
         name: "athlete",

@@ -10,17 +10,11 @@ use crate::failure::usage;
 use crate::{presets, resolve};
 
 /// Those that come with the program, by name.
-const EMBEDDED: [(&str, &str); 5] = [
+const EMBEDDED: [(&str, &str); 2] = [
     ("athlete", include_str!("../../../stages/athlete.toml")),
     (
         "athlete-robust",
         include_str!("../../../stages/athlete-robust.toml"),
-    ),
-    ("robust", include_str!("../../../stages/robust.toml")),
-    ("runner", include_str!("../../../stages/runner.toml")),
-    (
-        "runner-robust",
-        include_str!("../../../stages/runner-robust.toml"),
     ),
 ];
 
@@ -291,7 +285,9 @@ mod tests {
         assert!(problem(&stage.repeat(2)).contains("stage a: there are two"));
         assert!(problem(&stage.replace('1', "0")).contains("iterations = 0"));
         assert!(problem(&format!("{stage}itrations = 2")).contains("itrations"));
-        let unknown = Plan::new("runer", None, None, &[]).unwrap_err().to_string();
-        assert!(unknown.contains("did you mean `runner`?"), "{unknown}");
+        let unknown = Plan::new("athlet", None, None, &[])
+            .unwrap_err()
+            .to_string();
+        assert!(unknown.contains("did you mean `athlete`?"), "{unknown}");
     }
 }
