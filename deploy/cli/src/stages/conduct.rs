@@ -1,6 +1,7 @@
 //! The runs of the stages, one after another, to the end or until it is stopped.
 
 use std::ffi::OsString;
+use std::os::unix::process::ExitStatusExt;
 use std::process::{ExitStatus, Stdio};
 
 use anyhow::{Context, Result, bail};
@@ -12,6 +13,9 @@ use super::plan::{Plan, Planned};
 use crate::failure::usage;
 use crate::place::Place;
 use crate::supervise::Stop;
+
+/// Number of the signal that asks a run to end.
+const INTERRUPT: i32 = Signal::INT.as_raw();
 
 /// Runs what is not done yet.
 pub(super) fn conduct(plan: &Plan, place: &Place) -> Result<()> {
@@ -36,7 +40,9 @@ pub(super) fn conduct(plan: &Plan, place: &Place) -> Result<()> {
             say(&format!("stage {} of {all}: {run}, {iterations} iterations", i + 1));
             let child = start(stage, before, plan.actors, place)?;
             let (status, stopped) = follow(child, &mut stop).await?;
-            if !status.success() {
+            // One that is asked to end before it can hear it ends by the signal itself.
+            let ended = status.success() || stopped && status.signal() == Some(INTERRUPT);
+            if !ended {
                 bail!("stage {run}: `ampco train` {}", crate::child::describe(status));
             }
             if stopped {
