@@ -288,6 +288,6 @@ mod tests {
         let unknown = Plan::new("athlet", None, None, &[])
             .unwrap_err()
             .to_string();
-        assert!(unknown.contains("did you mean `athlete`?"), "{unknown}");
+        assert!(unknown.contains("did you mean `athlete` or"), "{unknown}");
     }
 }
