@@ -25,8 +25,8 @@ pub struct SingleStanceConfig {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub run_from: Option<f32>,
     /// Part of a run's pay that is for flight itself, all of it for 40 ms between one foot's lift-off and the other's
-    /// landing. Default 0: then a walk of long steps earns as much as a run, and beside other commands runs became
-    /// walks again.
+    /// landing. Default 0: then a walk of long steps earns as much as a run, and beside other commands robots that
+    /// ran flew less and less.
     #[serde(skip_serializing_if = "is_nothing")]
     pub flight: f32,
     /// Share of the task reward that who is told to stand loses while a foot is in the air. Default 0: stepping on the
@@ -61,6 +61,12 @@ impl SingleStanceConfig {
         config::share("single_stance.share", self.share)?;
         config::at_least("single_stance.seconds", self.seconds, CONTROL_STEP)?;
         config::share("single_stance.flight", self.flight)?;
+        config::require(
+            self.flight == 0.0 || self.run_from.is_some(),
+            "single_stance.flight",
+            self.flight,
+            "say with run_from from which speed on it is paid",
+        )?;
         config::share("single_stance.standing", self.standing)?;
         self.run_from.map_or(Ok(()), |speed| {
             config::at_least("single_stance.run_from", speed, 0.5)
@@ -282,6 +288,12 @@ mod tests {
         assert!(refused(1.5, 0.4).contains("single_stance.share = 1.5"));
         assert!(refused(0.5, 0.0).contains("single_stance.seconds = 0"));
         assert!(refused(0.5, 0.4).contains("single_stance.run_from = 0.2"));
+        let unpaid = SingleStanceConfig {
+            flight: 0.5,
+            ..SingleStanceConfig::default()
+        };
+        let refused = unpaid.validate().unwrap_err().to_string();
+        assert!(refused.contains("single_stance.flight = 0.5"), "{refused}");
         SingleStanceConfig::default().validate().unwrap();
     }
 }

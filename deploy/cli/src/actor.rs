@@ -42,11 +42,7 @@ impl AddActor {
                 folder.name()
             )));
         }
-        let runtime = tokio::runtime::Builder::new_current_thread()
-            .enable_all()
-            .build()
-            .context("starting the loop")?;
-        let status = runtime.block_on(stay_with(&folder))?;
+        let status = child::runtime()?.block_on(stay_with(&folder))?;
         if !status.success() {
             bail!("the actor {}", child::describe(status));
         }

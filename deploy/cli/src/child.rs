@@ -12,6 +12,7 @@ use anyhow::{Context, Result};
 use rustix::process::{Pid, Signal, kill_process};
 use tokio::io::{AsyncBufReadExt, BufReader};
 use tokio::process::Command;
+use tokio::runtime::Runtime;
 use tokio::sync::mpsc::UnboundedSender;
 
 use crate::failure::usage;
@@ -24,6 +25,14 @@ const MOST_IDLE_LIVES: u32 = 5;
 
 /// So many brief lives in a row, and it is given up whatever it did in them.
 const MOST_BRIEF_LIVES: u32 = 40;
+
+/// The loop of who starts programs. One thread: the kernel ties a child's life to the thread that started it.
+pub(crate) fn runtime() -> Result<Runtime> {
+    tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .context("starting the loop that follows programs")
+}
 
 /// What a death means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

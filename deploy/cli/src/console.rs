@@ -12,6 +12,12 @@ const EVERY: Duration = Duration::from_secs(5);
 /// What stands between two figures of a line.
 pub(crate) const BETWEEN: &str = " · ";
 
+/// Says something where no line is rewritten in place.
+pub(crate) fn say(message: &str) {
+    // Whoever watched may have closed the terminal.
+    let _ = writeln!(std::io::stderr(), "{message}");
+}
+
 #[derive(Debug)]
 pub(crate) struct Console {
     out: Stderr,

@@ -126,8 +126,8 @@ pub(crate) struct Preset {
     /// Stem of the names of its runs.
     pub(crate) name: String,
     pub(crate) config: Config,
-    /// The folder that its relative paths start from; `None` for one of ours, which has none.
-    pub(crate) folder: Option<PathBuf>,
+    /// The file, from whose folder its relative paths start; `None` for one of ours, which has none.
+    pub(crate) file: Option<PathBuf>,
 }
 
 /// The names, for help and errors.
@@ -141,7 +141,7 @@ pub(crate) fn find(given: &str) -> Result<Preset> {
         return Ok(Preset {
             name: preset.name.to_owned(),
             config: preset.config()?,
-            folder: None,
+            file: None,
         });
     }
     let path = Path::new(given);
@@ -157,7 +157,7 @@ pub(crate) fn find(given: &str) -> Result<Preset> {
     Ok(Preset {
         name: run_stem(&path),
         config: Config::read(&path)?,
-        folder: path.parent().map(Path::to_owned),
+        file: Some(path),
     })
 }
 
@@ -217,6 +217,6 @@ mod tests {
             preset.config.given("run.seed").and_then(|v| v.as_integer()),
             Some(3)
         );
-        assert_eq!(preset.folder, Some(folder.path().canonicalize().unwrap()));
+        assert_eq!(preset.file, Some(path.canonicalize().unwrap()));
     }
 }

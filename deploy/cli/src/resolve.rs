@@ -67,17 +67,15 @@ pub(crate) fn resolve(config: &mut Config) -> Result<Resolved> {
 
 /// Makes the files that the configuration names absolute: a preset's start from its own folder,
 /// those of `--set` from the present one. The run's processes start wherever they like.
-pub(crate) fn anchor_files(config: &mut Config, preset: Option<(&str, &Path)>) -> Result<()> {
+pub(crate) fn anchor_files(config: &mut Config, preset: Option<&Path>) -> Result<()> {
     let Some(Value::Array(clips)) = config.given("motion.clips") else {
         return Ok(());
     };
     let mut clips = clips.clone();
     let origin = config.origin("motion.clips").unwrap_or_default().to_owned();
     let here = std::env::current_dir().context("finding the present folder")?;
-    let folder = match preset {
-        Some((file, folder)) if origin == file => folder,
-        _ => &here,
-    };
+    let of_preset = preset.filter(|file| origin == file.display().to_string());
+    let folder = of_preset.and_then(Path::parent).unwrap_or(&here);
     for clip in &mut clips {
         for key in ["file", "folder"] {
             if let Some(Value::String(path)) = clip.get_mut(key) {
@@ -87,6 +85,23 @@ pub(crate) fn anchor_files(config: &mut Config, preset: Option<(&str, &Path)>) -
     }
     config.put("motion.clips", clips, &origin);
     Ok(())
+}
+
+/// The first lines in which two resolved configurations differ, the one that is there and the one that is meant; a
+/// line that one of them has not is empty.
+pub(crate) fn difference(theirs: &Config, ours: &Config) -> Option<(String, String)> {
+    let (theirs, ours) = (theirs.to_toml(), ours.to_toml());
+    let (mut theirs, mut ours) = (theirs.lines(), ours.lines());
+    loop {
+        match (theirs.next(), ours.next()) {
+            (None, None) => return None,
+            (theirs, ours) if theirs == ours => {}
+            (theirs, ours) => {
+                let line = |line: Option<&str>| line.unwrap_or_default().to_owned();
+                return Some((line(theirs), line(ours)));
+            }
+        }
+    }
 }
 
 /// Reads a section, has it checked, and writes its defaults out.
@@ -175,10 +190,10 @@ mod tests {
 
     #[test]
     fn a_presets_files_start_from_its_folder_and_those_of_set_from_here() {
-        let folder = Path::new("/presets");
+        let preset = Path::new("/presets/my.toml");
         let text = "[motion]\nclips = [{ file = \"x.csv\", fps = 60 }, { gait = \"stand\" }]";
         let mut config = Config::parse(text, "/presets/my.toml").unwrap();
-        anchor_files(&mut config, Some(("/presets/my.toml", folder))).unwrap();
+        anchor_files(&mut config, Some(preset)).unwrap();
         let clip = |config: &Config| match config.given("motion.clips") {
             Some(Value::Array(clips)) => clips[0]["file"].as_str().unwrap().to_owned(),
             other => panic!("{other:?}"),
@@ -188,7 +203,7 @@ mod tests {
         config
             .set("motion.clips=[{ file = \"y.csv\", fps = 60 }]")
             .unwrap();
-        anchor_files(&mut config, Some(("/presets/my.toml", folder))).unwrap();
+        anchor_files(&mut config, Some(preset)).unwrap();
         let here = std::env::current_dir().unwrap().join("y.csv");
         assert_eq!(clip(&config), here.to_string_lossy());
     }

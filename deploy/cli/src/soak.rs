@@ -17,6 +17,7 @@ use protocol::Shutdown;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
+use crate::console::say;
 use crate::failure::usage;
 use crate::place::Place;
 use figures::Figures;
@@ -250,9 +251,4 @@ impl<'a> Session<'a> {
             &self.victims,
         )
     }
-}
-
-fn say(message: &str) {
-    // Whoever watched may have closed the terminal.
-    let _ = writeln!(std::io::stderr(), "{message}");
 }

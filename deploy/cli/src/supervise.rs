@@ -58,11 +58,7 @@ enum Reason {
 
 /// Starts the group, watches it to its end, and leaves nothing behind.
 pub(crate) fn supervise(launch: &Launch<'_>) -> Result<()> {
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build()
-        .context("starting the supervisor's loop")?;
-    runtime.block_on(async {
+    child::runtime()?.block_on(async {
         let mut stop = Stop::install()?;
         let domain = Domain::for_run(launch.folder.path())?;
         orphans::clear(launch.folder, &domain).await?;

@@ -9,6 +9,7 @@ use motion::Dataset;
 use protocol::RolloutLayout;
 use run::{Config, Folder};
 
+use crate::console::say;
 use crate::evaluate::subject::Kept;
 use crate::failure::usage;
 use crate::place::Place;
@@ -110,12 +111,7 @@ impl Train {
             let path = path.to_str().context("the path of --from is not text")?;
             config.put("run.from", path, &format!("--from {from}"));
         }
-        let file = self
-            .preset
-            .as_deref()
-            .and_then(|given| Path::new(given).canonicalize().ok());
-        let file = file.map(|path| path.display().to_string());
-        resolve::anchor_files(&mut config, file.as_deref().zip(preset.folder.as_deref()))?;
+        resolve::anchor_files(&mut config, preset.file.as_deref())?;
         let resolved = checked(&mut config)?;
         let name = match &self.run {
             Some(name) => name.clone(),
@@ -230,10 +226,4 @@ fn taken(folder: &Folder) -> anyhow::Error {
     usage(format!(
         "run {name} exists already: go on with `--run {name} --resume`, or choose another name"
     ))
-}
-
-fn say(message: &str) {
-    use std::io::Write;
-    // Whoever watched may have closed the terminal.
-    let _ = writeln!(std::io::stderr(), "{message}");
 }

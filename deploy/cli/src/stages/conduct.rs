@@ -10,6 +10,8 @@ use rustix::process::{Pid, Signal, kill_process};
 use tokio::process::{Child, Command};
 
 use super::plan::{Plan, Planned};
+use crate::child;
+use crate::console::say;
 use crate::failure::usage;
 use crate::place::Place;
 use crate::supervise::Stop;
@@ -19,12 +21,7 @@ const INTERRUPT: i32 = Signal::INT.as_raw();
 
 /// Runs what is not done yet.
 pub(super) fn conduct(plan: &Plan, place: &Place) -> Result<()> {
-    // One thread: the kernel ties a child's life to the thread that started it.
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build()
-        .context("starting the loop of the stages")?;
-    runtime.block_on(async {
+    child::runtime()?.block_on(async {
         let mut stop = Stop::install()?;
         for stage in &plan.stages {
             check_unchanged(stage, place)?;
@@ -43,7 +40,7 @@ pub(super) fn conduct(plan: &Plan, place: &Place) -> Result<()> {
             // One that is asked to end before it can hear it ends by the signal itself.
             let ended = status.success() || stopped && status.signal() == Some(INTERRUPT);
             if !ended {
-                bail!("stage {run}: `ampco train` {}", crate::child::describe(status));
+                bail!("stage {run}: `ampco train` {}", child::describe(status));
             }
             if stopped {
                 say("stopped; the same command goes on from here");
@@ -144,10 +141,4 @@ async fn follow(mut child: Child, stop: &mut Stop) -> Result<(ExitStatus, bool)>
             }
         }
     }
-}
-
-fn say(message: &str) {
-    use std::io::Write;
-    // Whoever watched may have closed the terminal.
-    let _ = writeln!(std::io::stderr(), "{message}");
 }

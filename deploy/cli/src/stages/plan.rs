@@ -152,9 +152,7 @@ impl Stage {
         if let Some(actors) = actors {
             config.put("fleet.actors", i64::from(actors), "--actors");
         }
-        let file = Path::new(&preset).canonicalize().ok();
-        let file = file.map(|path| path.display().to_string());
-        resolve::anchor_files(&mut config, file.as_deref().zip(found.folder.as_deref()))?;
+        resolve::anchor_files(&mut config, found.file.as_deref())?;
         let fleet = resolve::resolve(&mut config)?.fleet;
         Ok(Planned {
             run: format!("{stem}-{}", self.name),
@@ -170,18 +168,12 @@ impl Stage {
 impl Planned {
     /// The first line of a run's configuration that is not what this stage would give it, and what it would give.
     pub(super) fn differs_from(&self, theirs: &Config) -> Option<(String, String)> {
+        let mut ours = self.config.clone();
         // Where a run began is known only once the stage before has ended.
-        let lines = |config: &Config| -> Vec<String> {
-            let text = config.to_toml();
-            let lines = text.lines().filter(|line| !line.starts_with("from = "));
-            lines.map(str::to_owned).collect()
-        };
-        let (theirs, ours) = (lines(theirs), lines(&self.config));
-        let longest = theirs.len().max(ours.len());
-        let line = |lines: &[String], i: usize| lines.get(i).cloned().unwrap_or_default();
-        (0..longest)
-            .map(|i| (line(&theirs, i), line(&ours, i)))
-            .find(|(theirs, ours)| theirs != ours)
+        if let Some(from) = theirs.given("run.from") {
+            ours.put("run.from", from.clone(), "the run");
+        }
+        resolve::difference(theirs, &ours)
     }
 }
 

@@ -17,6 +17,7 @@ use tokio::time::{MissedTickBehavior, interval};
 use super::folder::StudyFolder;
 use super::group::{self, Standing};
 use super::plan::Planned;
+use crate::child;
 use crate::console::Console;
 use crate::figures::{Figures, Pace};
 use crate::supervise::Stop;
@@ -28,12 +29,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Runs what is not done yet.
 pub(super) fn conduct(folder: &StudyFolder, file: &StudyFile, planned: Vec<Planned>) -> Result<()> {
-    // One thread: the kernel ties a child's life to the thread that started it.
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build()
-        .context("starting the study's loop")?;
-    runtime.block_on(async {
+    child::runtime()?.block_on(async {
         let mut stop = Stop::install()?;
         let mut conductor = Conductor::new(folder, file, planned)?;
         conductor.until_done(&mut stop).await?;

@@ -47,9 +47,7 @@ fn planned(study: &StudyFile, cell: &Cell, beside: &Path, origin: &str) -> Resul
     }
     config.put("run.seed", i64::try_from(cell.seed)?, origin);
     config.put("run.minutes", 0.0, origin);
-    let file = Path::new(own.as_deref().unwrap_or(given)).canonicalize();
-    let file = file.ok().map(|path| path.display().to_string());
-    resolve::anchor_files(&mut config, file.as_deref().zip(preset.folder.as_deref()))?;
+    resolve::anchor_files(&mut config, preset.file.as_deref())?;
     // First for the fleet, whose size turns transitions into iterations.
     let fleet = resolve::resolve(&mut config)?.fleet;
     let rows = (fleet.actors * fleet.environments_per_actor() * fleet.steps) as u64;
@@ -76,21 +74,13 @@ pub(super) fn check_unchanged(planned: &Planned, folder: &StudyFolder) -> Result
     let Some(run) = folder.run(&planned.name)? else {
         return Ok(());
     };
-    let (theirs, ours) = (run.config()?.to_toml(), planned.config.to_toml());
-    let lines = |text: &str| text.lines().map(str::to_owned).collect::<Vec<_>>();
-    let (theirs, ours) = (lines(&theirs), lines(&ours));
-    let differs = theirs.iter().zip(&ours).find(|(a, b)| a != b);
-    match differs {
-        None if theirs.len() == ours.len() => Ok(()),
-        None => Err(changed(&planned.name, "other keys", "these")),
-        Some((theirs, ours)) => Err(changed(&planned.name, theirs, ours)),
-    }
-}
-
-fn changed(name: &str, theirs: &str, ours: &str) -> anyhow::Error {
-    usage(format!(
+    let Some((theirs, ours)) = resolve::difference(&run.config()?, &planned.config) else {
+        return Ok(());
+    };
+    let name = &planned.name;
+    Err(usage(format!(
         "run {name} was made with `{theirs}` and the study now says `{ours}`; use another --out, or remove the run"
-    ))
+    )))
 }
 
 /// The target of a run that was made, from its own configuration.
