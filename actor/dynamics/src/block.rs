@@ -5,7 +5,7 @@
 
 use crate::lane::{Lane, Real};
 use crate::tree::{POINTS, inertial};
-use g1::{BODIES, JOINTS, RobotState, links::TORSO};
+use g1::{JOINTS, RobotState, links::TORSO};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -76,8 +76,8 @@ impl Build {
 pub(crate) struct Block<T> {
     /// [`row::STATE`] rows.
     pub(crate) state: Vec<Row<T>>,
-    /// Ten rows a body.
-    pub(crate) bodies: Vec<Row<T>>,
+    /// Mass, centre of mass and inertia of the torso.
+    pub(crate) torso: Vec<Row<T>>,
     pub(crate) friction: Row<T>,
 }
 
@@ -86,13 +86,10 @@ impl<T: Real> Block<T> {
     pub(crate) fn new() -> Self {
         let mut block = Self {
             state: vec![Row::default(); row::STATE],
-            bodies: vec![Row::default(); BODIES * row::PER_BODY],
+            torso: vec![Row::default(); row::PER_BODY],
             friction: Row::default(),
         };
         for lane in 0..LANES {
-            for body in 0..BODIES {
-                block.set_body(lane, body, &Build::NOMINAL);
-            }
             block.set_build(lane, &Build::NOMINAL);
             block.set_state(lane, &RobotState::standing());
         }
@@ -111,30 +108,23 @@ impl<T: Real> Block<T> {
         self.state.as_mut_slice().try_into().expect("a whole state")
     }
 
-    /// The ten numbers of a body.
+    /// The rows of the torso, likewise.
     #[inline(always)]
-    pub(crate) fn body(&self, body: usize) -> &[Row<T>; row::PER_BODY] {
-        let first = body * row::PER_BODY;
-        self.bodies[first..first + row::PER_BODY]
-            .try_into()
-            .expect("ten numbers")
+    pub(crate) fn torso(&self) -> &[Row<T>; row::PER_BODY] {
+        self.torso.as_slice().try_into().expect("a whole torso")
     }
 
     /// Makes one robot of something else. Only the torso varies.
     pub(crate) fn set_build(&mut self, lane: usize, build: &Build) {
-        self.set_body(lane, TORSO, build);
-        self.friction.0[lane] = T::of(f64::from(build.friction));
-    }
-
-    fn set_body(&mut self, lane: usize, body: usize, build: &Build) {
         let numbers = inertial(
-            body,
+            TORSO,
             f64::from(build.torso_mass),
             build.torso_com.map(f64::from),
         );
-        for (i, number) in numbers.into_iter().enumerate() {
-            self.bodies[body * row::PER_BODY + i].0[lane] = T::of(number);
+        for (row, number) in self.torso.iter_mut().zip(numbers) {
+            row.0[lane] = T::of(number);
         }
+        self.friction.0[lane] = T::of(f64::from(build.friction));
     }
 
     /// Puts one robot into a state; its contacts begin anew.

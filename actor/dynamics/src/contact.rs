@@ -10,13 +10,17 @@
 mod reach;
 mod relax;
 
-use crate::block::{Block, row};
+use crate::block::{Block, Row, row};
 use crate::factor::{self, Factor};
 use crate::ground::Ground;
+use crate::group::Group;
 use crate::kinematics::Walk;
 use crate::lane::Lane;
 use crate::spatial::Vec3;
-use crate::tree::{BASE, CHAIN, DEGREES, LIMBS, POINT_TABLE, POINTS, SOLE_POINTS, TRUNK, Tree};
+use crate::tree::{
+    BASE, CHAIN, DEGREES, LIMBS, POINT_TABLE, POINTS, SOLE_POINTS, SOLES, TRUNK, Tree,
+};
+use g1::JOINTS;
 use reach::Reach;
 
 /// Time constant of the normal's return, s.
@@ -52,12 +56,15 @@ pub(crate) struct Contacts<L> {
     /// First and one past the last of every limb.
     of_limb: [(usize, usize); LIMBS],
     reach: Reach<L>,
+    friction: L,
+    /// ζ of every degree (see [`factor`]): begins with what the other forces did and ends with the
+    /// impulses in it.
+    pub(crate) zeta: [L; DEGREES],
 }
 
 /// What all contacts of a step share.
 pub(crate) struct Touch<'a, L: Lane> {
     pub(crate) token: L::Token,
-    pub(crate) lane: usize,
     pub(crate) tree: &'a Tree<L::Scalar>,
     pub(crate) ground: &'a Ground,
     pub(crate) dt: L,
@@ -82,7 +89,16 @@ impl<L: Lane> Contacts<L> {
             list: [contact; POINTS],
             of_limb: [(0, 0); LIMBS],
             reach: Reach::new(zero),
+            friction: zero,
+            zeta: [zero; DEGREES],
         }
+    }
+
+    /// How many there are on a limb.
+    #[inline(always)]
+    fn count(&self, limb: usize) -> usize {
+        let (first, end) = self.of_limb[limb];
+        end - first
     }
 
     /// Finds the points that touch, and how they move and yield.
@@ -92,16 +108,17 @@ impl<L: Lane> Contacts<L> {
         touch: &Touch<'_, L>,
         walk: &Walk<L>,
         factor: Factor<'_, L>,
-        block: &Block<L::Scalar>,
+        state: &[L; row::STATE],
         velocity: &[L; DEGREES],
     ) {
+        self.friction = touch.friction;
         let mut count = 0;
         for limb in 0..LIMBS {
             let first = count;
             count = if limb < 2 {
-                self.find_limb::<BASE, 6>(limb, first, touch, walk, factor, block, velocity)
+                self.find_limb::<BASE, 6>(limb, first, touch, walk, factor, state, velocity)
             } else {
-                self.find_limb::<TRUNK, 5>(limb, first, touch, walk, factor, block, velocity)
+                self.find_limb::<TRUNK, 5>(limb, first, touch, walk, factor, state, velocity)
             };
             self.of_limb[limb] = (first, count);
         }
@@ -119,11 +136,10 @@ impl<L: Lane> Contacts<L> {
         touch: &Touch<'_, L>,
         walk: &Walk<L>,
         factor: Factor<'_, L>,
-        block: &Block<L::Scalar>,
+        state: &[L; row::STATE],
         velocity: &[L; DEGREES],
     ) -> usize {
-        let place =
-            |axis: usize| -> L { block.state[row::POSITION + axis].get(touch.token, touch.lane) };
+        let place = |axis: usize| state[row::POSITION + axis];
         let root = Vec3::new(place(0), place(1), place(2));
         let base = Vec3::new(velocity[0], velocity[1], velocity[2]);
         let zero = touch.dt.lit(0.0);
@@ -173,45 +189,22 @@ impl<L: Lane> Contacts<L> {
             }
             let products = self.reach.at(at, frame, &mut contact.y);
             let now = [now.z, now.x, now.y];
-            contact.meet(touch, block, touching, distance, now, products);
+            contact.meet(touch, state, touching, distance, now, products);
         }
         count
     }
 
-    /// Finds the impulses: ζ begins with what the other forces did and ends with the contacts in it.
-    #[inline(always)]
-    pub(crate) fn solve(&mut self, friction: L, sweeps: usize, x: &mut [L; DEGREES]) {
-        for sweep in 0..=sweeps {
-            for limb in 0..LIMBS {
-                let (first, end) = self.of_limb[limb];
-                if first == end {
-                    continue;
-                }
-                let contacts = &mut self.list[first..end];
-                // The first time round only brings in the impulses of the last step.
-                let begin = sweep == 0;
-                if limb < 2 {
-                    relax::visit::<L, BASE, 6>(contacts, limb, begin, friction, x);
-                } else {
-                    relax::visit::<L, TRUNK, 5>(contacts, limb, begin, friction, x);
-                }
-            }
-        }
-    }
-
     /// Keeps the impulses for the next step, and tells the normal ones of each sole.
     #[inline(always)]
-    pub(crate) fn keep(&self, touch: &Touch<'_, L>, block: &mut Block<L::Scalar>) -> [L; 2] {
-        let zero = touch.dt.lit(0.0);
-        for row in &mut block.state[row::IMPULSE..] {
-            row.set(touch.lane, zero);
+    pub(crate) fn keep(&self, zero: L, state: &mut [L; row::STATE]) -> [L; SOLES] {
+        // No `fill`: it would be a call, and of code for a machine without wide vectors.
+        for impulse in &mut state[row::IMPULSE..] {
+            *impulse = zero;
         }
-        let mut soles = [zero; 2];
+        let mut soles = [zero; SOLES];
         for contact in &self.list[..self.of_limb[LIMBS - 1].1] {
-            for axis in 0..3 {
-                block.state[row::IMPULSE + 3 * contact.point + axis]
-                    .set(touch.lane, contact.impulse[axis]);
-            }
+            let first = row::IMPULSE + 3 * contact.point;
+            state[first..first + 3].copy_from_slice(&contact.impulse);
             if contact.point < SOLE_POINTS {
                 let foot = contact.point / 4;
                 soles[foot] = soles[foot] + contact.impulse[0];
@@ -221,11 +214,29 @@ impl<L: Lane> Contacts<L> {
     }
 }
 
+/// Finds the impulses of several groups.
+#[inline(always)]
+pub(crate) fn solve<L: Lane>(groups: &mut [&mut Contacts<L>], sweeps: usize) {
+    for sweep in 0..=sweeps {
+        // The first time round only brings in the impulses of the last step.
+        let begin = sweep == 0;
+        for limb in 0..LIMBS {
+            if limb < 2 {
+                relax::visit::<L, BASE, 6>(groups, limb, begin);
+            } else {
+                relax::visit::<L, TRUNK, 5>(groups, limb, begin);
+            }
+        }
+    }
+}
+
 /// Velocity per impulse at every point of the robot that stands, mean of the three directions, 1/kg:
 /// what softness is a share of, so that it does not depend on the step or on the pose.
 pub(crate) fn weights(tree: &Tree<f64>) -> [f64; POINTS] {
+    let mut standing = Group::new(());
+    standing.load((), &Block::new(), &[Row::default(); JOINTS], 0);
     let mut walk = Walk::new(());
-    walk.run((), tree, &Block::new(), 0);
+    walk.run((), tree, &standing);
     let mut root = [0.0; DEGREES];
     factor::factor(&mut walk.trunk, &mut walk.limbs, &mut root);
     let factor = Factor {
@@ -253,7 +264,7 @@ impl<L: Lane> Contact<L> {
     fn meet(
         &mut self,
         touch: &Touch<'_, L>,
-        block: &Block<L::Scalar>,
+        state: &[L; row::STATE],
         touching: L::Mask,
         distance: L,
         now: [L; 3],
@@ -283,8 +294,7 @@ impl<L: Lane> Contact<L> {
         let inverse = inverse.select(touching, zero);
         self.grip = [second * inverse, -(mixed * inverse), first * inverse];
         for axis in 0..3 {
-            let row = row::IMPULSE + 3 * self.point + axis;
-            let before: L = block.state[row].get(touch.token, touch.lane);
+            let before = state[row::IMPULSE + 3 * self.point + axis];
             self.impulse[axis] = before.select(touching, zero);
         }
     }

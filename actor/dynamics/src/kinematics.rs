@@ -5,10 +5,12 @@
 //! Featherstone, *Rigid Body Dynamics Algorithms* (2008), chapters 5 and 6, with all quantities in
 //! world axes about the root point, so that composites and forces are plain sums.
 
-use crate::block::{Block, row};
+use crate::block::row;
+use crate::body::{Body, Frame};
 use crate::factor::each;
-use crate::lane::Lane;
-use crate::spatial::{Inertia, Rotation, Spatial, Symmetric, Vec3};
+use crate::group::Group;
+use crate::lane::{Lane, afresh};
+use crate::spatial::{Rotation, Spatial, Vec3};
 use crate::tree::{
     BASE, CHAIN, DEGREES, LIMB_FIRST, LIMB_JOINTS, LIMBS, POINTS, SHAPES, TRUNK, Tree,
 };
@@ -16,17 +18,6 @@ use g1::{BODIES, JOINTS, joints, links};
 
 /// Gravity, m/s².
 const GRAVITY: f64 = 9.81;
-
-/// A body on the way down.
-#[derive(Clone, Copy)]
-struct Frame<L> {
-    orientation: Rotation<L>,
-    /// From the root point, world axes, m.
-    position: Vec3<L>,
-    velocity: Spatial<L>,
-    /// With zero generalised accelerations, gravity as an upward acceleration.
-    acceleration: Spatial<L>,
-}
 
 /// What the walk leaves behind.
 pub(crate) struct Walk<L> {
@@ -42,8 +33,10 @@ pub(crate) struct Walk<L> {
     pub(crate) points: [Vec3<L>; POINTS],
     /// Velocities of the bodies in the frame that moves with the root point.
     pub(crate) velocities: [Spatial<L>; BODIES],
-    /// Bodies of the limb at work, and the forces that their motion takes.
-    bodies: [(Inertia<L>, Spatial<L>); LIMB_JOINTS],
+    pelvis: Body<L>,
+    torso: Body<L>,
+    /// Bodies of the limb at work.
+    bodies: [Body<L>; LIMB_JOINTS],
 }
 
 impl<L: Lane> Walk<L> {
@@ -55,18 +48,6 @@ impl<L: Lane> Walk<L> {
             turn: none,
             shift: none,
         };
-        let weightless = Inertia {
-            mass: zero,
-            moment: none,
-            rotational: Symmetric {
-                xx: zero,
-                yy: zero,
-                zz: zero,
-                xy: zero,
-                xz: zero,
-                yz: zero,
-            },
-        };
         Self {
             motions: [still; JOINTS],
             bias: [zero; DEGREES],
@@ -74,65 +55,70 @@ impl<L: Lane> Walk<L> {
             limbs: [[[zero; CHAIN]; LIMB_JOINTS]; LIMBS],
             points: [none; POINTS],
             velocities: [still; BODIES],
-            bodies: [(weightless, still); LIMB_JOINTS],
+            pelvis: Body::new(zero),
+            torso: Body::new(zero),
+            bodies: [Body::new(zero); LIMB_JOINTS],
         }
     }
 
-    /// Fills everything for the robots of a block from `lane` on.
+    /// Fills everything for the robots of a group.
     #[inline(always)]
-    pub(crate) fn run(
-        &mut self,
-        token: L::Token,
-        tree: &Tree<L::Scalar>,
-        block: &Block<L::Scalar>,
-        lane: usize,
-    ) {
-        let state = block.rows();
-        let get = |row: usize| -> L { state[row].get(token, lane) };
+    pub(crate) fn run(&mut self, token: L::Token, tree: &Tree<L::Scalar>, group: &Group<L>) {
+        let get = |row: usize| group.state[row];
         let zero = L::splat(token, L::Scalar::default());
         let none = Vec3::new(zero, zero, zero);
         let q = row::QUATERNION;
-        let pelvis = Frame {
+        self.pelvis.frame = Frame {
             orientation: Rotation::of_quaternion(get(q), get(q + 1), get(q + 2), get(q + 3)),
             position: none,
-            velocity: Spatial {
-                turn: Vec3::new(
-                    get(row::ANGULAR),
-                    get(row::ANGULAR + 1),
-                    get(row::ANGULAR + 2),
-                ),
-                shift: none,
-            },
-            acceleration: Spatial {
-                turn: none,
-                shift: Vec3::new(zero, zero, zero.lit(GRAVITY)),
-            },
         };
-        let (mut whole, mut force) = self.body(token, tree, block, lane, links::PELVIS, &pelvis);
+        self.pelvis.acceleration = Spatial {
+            turn: none,
+            shift: Vec3::new(zero, zero, zero.lit(GRAVITY)),
+        };
+        let w = row::ANGULAR;
+        self.velocities[links::PELVIS] = Spatial {
+            turn: Vec3::new(get(w), get(w + 1), get(w + 2)),
+            shift: none,
+        };
+        let nominal = tree.inertials[links::PELVIS];
+        self.pelvis.weigh(&self.velocities[links::PELVIS], |i| {
+            L::splat(token, nominal[i])
+        });
+        let (frame, points) = (afresh(&self.pelvis.frame), &mut self.points);
+        frame.place(token, tree, links::PELVIS, points);
         for limb in 0..2 {
-            let (inertia, load) = self.limb::<BASE, 6>(token, tree, block, lane, limb, &pelvis);
-            whole = whole.add(&inertia);
-            force = force.add(load);
+            self.limb::<BASE, 6>(token, tree, group, limb);
+            self.pelvis
+                .carry(&self.bodies[0].inertia, self.bodies[0].force);
         }
-        let torso = self.hinge(
+        let joint = joints::WAIST;
+        let parent = afresh(&self.pelvis.frame);
+        let (frame, motion) = parent.across(
             token,
-            tree,
-            block,
-            lane,
-            joints::WAIST,
-            SHAPES[joints::WAIST],
-            &pelvis,
+            &tree.hinges[joint],
+            SHAPES[joint],
+            get(row::JOINT + joint),
         );
-        let (mut upper, mut load) = self.body(token, tree, block, lane, links::TORSO, &torso);
+        (self.torso.frame, self.motions[joint]) = (frame, motion);
+        let speed = group.state[row::SPEED + joint];
+        let turning = motion.scale(speed);
+        let before = &self.velocities[links::PELVIS];
+        self.torso.acceleration = before.cross_motion_add(turning, self.pelvis.acceleration);
+        self.velocities[links::TORSO] = before.add(turning);
+        self.torso
+            .weigh(&self.velocities[links::TORSO], |i| group.torso[i]);
+        let (frame, points) = (afresh(&self.torso.frame), &mut self.points);
+        frame.place(token, tree, links::TORSO, points);
         for limb in 2..LIMBS {
-            let (inertia, of_arm) = self.limb::<TRUNK, 5>(token, tree, block, lane, limb, &torso);
-            upper = upper.add(&inertia);
-            load = load.add(of_arm);
+            self.limb::<TRUNK, 5>(token, tree, group, limb);
+            self.torso
+                .carry(&self.bodies[0].inertia, self.bodies[0].force);
         }
-        let waist = self.motions[joints::WAIST];
-        let moved = upper.times(waist);
-        self.bias[BASE + joints::WAIST] = waist.dot(load);
-        let armature = L::splat(token, tree.hinges[joints::WAIST].armature);
+        let (waist, torso) = (self.motions[joint], afresh(&self.torso));
+        let moved = torso.inertia.times(waist);
+        self.bias[BASE + joint] = waist.dot(torso.force);
+        let armature = L::splat(token, tree.hinges[joint].armature);
         self.trunk[BASE] = [
             moved.shift.x,
             moved.shift.y,
@@ -142,14 +128,14 @@ impl<L: Lane> Walk<L> {
             moved.turn.z,
             waist.dot(moved) + armature,
         ];
-        whole = whole.add(&upper);
-        force = force.add(load);
-        self.base(&whole, &force, zero);
+        self.pelvis.carry(&self.torso.inertia, self.torso.force);
+        self.base(zero);
     }
 
     /// The base's own part: total mass, first moment, inertia and load.
     #[inline(always)]
-    fn base(&mut self, whole: &Inertia<L>, force: &Spatial<L>, zero: L) {
+    fn base(&mut self, zero: L) {
+        let (whole, force) = (&self.pelvis.inertia, &self.pelvis.force);
         let (m, h, j) = (whole.mass, whole.moment, &whole.rotational);
         let trunk = &mut self.trunk;
         trunk[0][0] = m;
@@ -174,169 +160,77 @@ impl<L: Lane> Walk<L> {
         });
     }
 
-    /// A limb down and up; returns what it weighs and how it loads its root.
+    /// A limb down and up; leaves what it weighs and how it loads its root in its first body.
     #[inline(always)]
     fn limb<const PREFIX: usize, const COUNT: usize>(
         &mut self,
         token: L::Token,
         tree: &Tree<L::Scalar>,
-        block: &Block<L::Scalar>,
-        lane: usize,
+        group: &Group<L>,
         limb: usize,
-        root: &Frame<L>,
-    ) -> (Inertia<L>, Spatial<L>) {
+    ) {
         let first = LIMB_FIRST[limb];
-        let mut frame = *root;
+        let (trunk, root) = match PREFIX {
+            BASE => (links::PELVIS, &self.pelvis),
+            _ => (links::TORSO, &self.torso),
+        };
         each!(K in [0 1 2 3 4 5] {
             if K < COUNT {
                 let shape = SHAPES[if PREFIX == BASE { K } else { LIMB_FIRST[2] + K }];
-                frame = self.hinge(token, tree, block, lane, first + K, shape, &frame);
-                self.bodies[K] = self.body(token, tree, block, lane, first + K + 1, &frame);
+                let parent = match K {
+                    0 => *afresh(&root.frame),
+                    _ => self.bodies[K - 1].frame,
+                };
+                let (frame, motion) = parent.across(token, &tree.hinges[first + K], shape, group.state[row::JOINT + first + K]);
+                self.bodies[K].frame = frame;
+                self.motions[first + K] = motion;
             }
         });
-        let (mut whole, mut load) = self.bodies[COUNT - 1];
+        // A loop that stays one: unrolled, all bodies' numbers were alive at once.
+        for k in 0..COUNT {
+            let (joint, body) = (first + k, first + k + 1);
+            let turning = self.motions[joint].scale(group.state[row::SPEED + joint]);
+            let (earlier, this) = self.bodies.split_at_mut(k);
+            let (parent, acceleration) = match earlier.last() {
+                None => (trunk, &root.acceleration),
+                Some(parent) => (body - 1, &parent.acceleration),
+            };
+            let before = &self.velocities[parent];
+            this[0].acceleration = before.cross_motion_add(turning, *acceleration);
+            self.velocities[body] = before.add(turning);
+            let numbers = &tree.inertials[body];
+            this[0].weigh(&self.velocities[body], |i| L::splat(token, numbers[i]));
+            this[0].frame.place(token, tree, body, &mut self.points);
+        }
         each!(K in [5 4 3 2 1 0] {
             if K < COUNT {
-            let k = K;
-            let motion = self.motions[first + k];
-            let moved = whole.times(motion);
-            self.bias[BASE + first + k] = motion.dot(load);
-            let rows = &mut self.limbs[limb][k];
-            rows[0] = moved.shift.x;
-            rows[1] = moved.shift.y;
-            rows[2] = moved.shift.z;
-            rows[3] = moved.turn.x;
-            rows[4] = moved.turn.y;
-            rows[5] = moved.turn.z;
-            if PREFIX == TRUNK {
-                rows[BASE] = self.motions[joints::WAIST].dot(moved);
-            }
-            each!(M in [0 1 2 3 4 5] {
-                if M <= K {
-                    rows[PREFIX + M] = self.motions[first + M].dot(moved);
+                let (motion, body) = (self.motions[first + K], afresh(&self.bodies[K]));
+                self.bias[BASE + first + K] = motion.dot(body.force);
+                let moved = body.inertia.times(motion);
+                let rows = &mut self.limbs[limb][K];
+                rows[0] = moved.shift.x;
+                rows[1] = moved.shift.y;
+                rows[2] = moved.shift.z;
+                rows[3] = moved.turn.x;
+                rows[4] = moved.turn.y;
+                rows[5] = moved.turn.z;
+                let motions = afresh(&self.motions);
+                if PREFIX == TRUNK {
+                    rows[BASE] = motions[joints::WAIST].dot(moved);
                 }
-            });
-            rows[PREFIX + k] = rows[PREFIX + k] + L::splat(token, tree.hinges[first + k].armature);
-            if k > 0 {
-                whole = whole.add(&self.bodies[k - 1].0);
-                load = load.add(self.bodies[k - 1].1);
-            }
+                each!(M in [0 1 2 3 4 5] {
+                    if M <= K {
+                        rows[PREFIX + M] = motions[first + M].dot(moved);
+                    }
+                });
+                let armature = L::splat(token, tree.hinges[first + K].armature);
+                rows[PREFIX + K] = rows[PREFIX + K] + armature;
+                if K > 0 {
+                    let (before, this) = self.bodies.split_at_mut(K);
+                    let child = afresh(&this[0]);
+                    before[K - 1].carry(&child.inertia, child.force);
+                }
             }
         });
-        (whole, load)
-    }
-
-    /// From a body across a joint to the next.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a part of `run`, split off only for its shape"
-    )]
-    #[inline(always)]
-    fn hinge(
-        &mut self,
-        token: L::Token,
-        tree: &Tree<L::Scalar>,
-        block: &Block<L::Scalar>,
-        lane: usize,
-        joint: usize,
-        (axis, placed): (usize, bool),
-        parent: &Frame<L>,
-    ) -> Frame<L> {
-        let hinge = &tree.hinges[joint];
-        let origin = Vec3::splat(token, hinge.origin);
-        let position = parent.orientation.turn_add(origin, parent.position);
-        let mut r = parent.orientation;
-        if placed {
-            let [x, y, z] = hinge.placed;
-            r = Rotation {
-                x: parent.orientation.turn(Vec3::splat(token, x)),
-                y: parent.orientation.turn(Vec3::splat(token, y)),
-                z: parent.orientation.turn(Vec3::splat(token, z)),
-            };
-        }
-        let state = block.rows();
-        let q: L = state[row::JOINT + joint].get(token, lane);
-        let speed: L = state[row::SPEED + joint].get(token, lane);
-        let (sin, cos) = q.sin_cos();
-        let ahead = |a: Vec3<L>, b: Vec3<L>| b.scale_add(sin, a.scale(cos));
-        let behind = |a: Vec3<L>, b: Vec3<L>| b.scale_add(-sin, a.scale(cos));
-        let (axis, orientation) = match axis {
-            0 => (
-                r.x,
-                Rotation {
-                    x: r.x,
-                    y: ahead(r.y, r.z),
-                    z: behind(r.z, r.y),
-                },
-            ),
-            1 => (
-                r.y,
-                Rotation {
-                    x: behind(r.x, r.z),
-                    y: r.y,
-                    z: ahead(r.z, r.x),
-                },
-            ),
-            _ => (
-                r.z,
-                Rotation {
-                    x: ahead(r.x, r.y),
-                    y: behind(r.y, r.x),
-                    z: r.z,
-                },
-            ),
-        };
-        let motion = Spatial {
-            turn: axis,
-            shift: position.cross(axis),
-        };
-        self.motions[joint] = motion;
-        let turning = motion.scale(speed);
-        Frame {
-            orientation,
-            position,
-            velocity: parent.velocity.add(turning),
-            acceleration: parent
-                .velocity
-                .cross_motion_add(turning, parent.acceleration),
-        }
-    }
-
-    /// A body's inertia and the force that its motion takes; its contact points on the way.
-    #[inline(always)]
-    fn body(
-        &mut self,
-        token: L::Token,
-        tree: &Tree<L::Scalar>,
-        block: &Block<L::Scalar>,
-        lane: usize,
-        body: usize,
-        frame: &Frame<L>,
-    ) -> (Inertia<L>, Spatial<L>) {
-        let numbers = block.body(body);
-        let get = |i: usize| -> L { numbers[i].get(token, lane) };
-        let centre = frame
-            .orientation
-            .turn_add(Vec3::new(get(1), get(2), get(3)), frame.position);
-        let own = Symmetric {
-            xx: get(4),
-            yy: get(5),
-            zz: get(6),
-            xy: get(7),
-            xz: get(8),
-            yz: get(9),
-        };
-        let inertia = Inertia::of_body(get(0), centre, &own, &frame.orientation);
-        let momentum = inertia.times(frame.velocity);
-        let force = frame
-            .velocity
-            .cross_force_add(momentum, inertia.times(frame.acceleration));
-        self.velocities[body] = frame.velocity;
-        let (first, end) = tree.of_body[body];
-        for &point in &tree.order[first..end] {
-            let at = Vec3::splat(token, tree.points[point]);
-            self.points[point] = frame.orientation.turn_add(at, frame.position);
-        }
-        (inertia, force)
     }
 }

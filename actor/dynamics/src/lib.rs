@@ -12,8 +12,10 @@
 //! | the ground | [`ground`] |
 //! | the tree, contact points | [`tree`] |
 //! | rows of sixteen numbers | [`block`] |
+//! | the robots of one register | `group` |
 //! | one robot in double precision, and its equations of motion | [`reference`] |
 //! | one step | `step` |
+//! | bodies: place, motion, inertia | `body` |
 //! | bias forces and the mass matrix | `kinematics` |
 //! | LᵀDL along the tree | `factor` |
 //! | contacts | `contact` |
@@ -29,10 +31,12 @@
 )]
 
 pub mod block;
+mod body;
 mod contact;
 pub mod drive;
 mod factor;
 pub mod ground;
+mod group;
 mod kinematics;
 pub mod lane;
 pub mod reference;

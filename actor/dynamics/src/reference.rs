@@ -4,13 +4,15 @@
 //! equations of motion themselves, M·v̇ = τ − C, taken by a fourth-order method where no contact acts.
 
 use crate::block::{Block, Row, row};
+use crate::contact::Contacts;
 use crate::drive::Motors;
 use crate::factor::{self, Factor};
 use crate::ground::Ground;
+use crate::group::{Group, Tally};
 use crate::kinematics::Walk;
 use crate::lane::Real;
 use crate::robots::Solver;
-use crate::step::{Room, Setting, Tally, step};
+use crate::step::{Crew, Setting, step};
 use crate::tree::{BASE, DEGREES, LIMB_FIRST, LIMBS, TRUNK, Tree};
 use g1::{JOINTS, RobotState};
 
@@ -74,19 +76,12 @@ impl Reference {
             dt,
             sweeps: self.sweeps,
         };
-        let mut room = Room::<f64>::new(());
-        let mut tally = Tally::default();
+        let (mut crew, mut contacts) = (Crew::<f64>::new(()), Contacts::none(()));
+        crew.group.load((), &self.block, &self.targets, 0);
         for _ in 0..steps {
-            step::<f64>(
-                (),
-                &setting,
-                &self.targets,
-                0,
-                &mut self.block,
-                &mut tally,
-                &mut room,
-            );
+            step((), &setting, &mut [&mut crew], &mut [&mut contacts]);
         }
+        crew.group.store(&mut self.block, &mut Tally::default(), 0);
     }
 
     /// Advances by Runge–Kutta steps of `dt` seconds, without contacts and stops: the solution of the
@@ -178,8 +173,10 @@ impl Reference {
     }
 
     fn walk(&self) -> Walk<f64> {
+        let mut group = Group::new(());
+        group.load((), &self.block, &self.targets, 0);
         let mut walk = Walk::new(());
-        walk.run((), &self.tree, &self.block, 0);
+        walk.run((), &self.tree, &group);
         walk
     }
 

@@ -3,10 +3,12 @@
 //! Separate because callers think of robot 37, while the solver thinks of lane 5 of block 2.
 
 use crate::block::{Block, Build, LANES, Row, row};
+use crate::contact::Contacts;
 use crate::drive::Motors;
 use crate::ground::Ground;
-use crate::lane::Packed;
-use crate::step::{Room, Setting, Tally, step};
+use crate::group::Tally;
+use crate::lane::{Packed, boundary};
+use crate::step::{Crew, Setting, step};
 use crate::tree::Tree;
 use g1::{JOINTS, RobotState};
 use nalgebra::Vector3;
@@ -200,12 +202,13 @@ impl Robots {
     /// Goes on from what was saved; false, and nothing changed, if that is of another number of
     /// robots or not whole.
     pub fn restore(&mut self, saved: Saved) -> bool {
-        let whole =
-            saved.count == self.count
-                && saved.blocks.len() == self.blocks.len()
-                && saved.blocks.iter().zip(&self.blocks).all(|(a, b)| {
-                    a.state.len() == b.state.len() && a.bodies.len() == b.bodies.len()
-                });
+        let whole = saved.count == self.count
+            && saved.blocks.len() == self.blocks.len()
+            && saved
+                .blocks
+                .iter()
+                .zip(&self.blocks)
+                .all(|(a, b)| a.state.len() == b.state.len() && a.torso.len() == b.torso.len());
         if whole {
             self.blocks = saved.blocks;
         }
@@ -232,14 +235,43 @@ impl WithSimd for Advance<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let mut room = Room::<Packed<S>>::new(simd);
-        let blocks = self.blocks.iter_mut().zip(self.targets).zip(self.tallies);
-        for ((block, targets), tally) in blocks {
-            *tally = Tally::default();
-            for lane in (0..LANES).step_by(S::F32_LANES) {
-                for _ in 0..self.steps {
-                    step::<Packed<S>>(simd, &self.setting, targets, lane, block, tally, &mut room);
-                }
+        match S::F32_LANES {
+            16 => self.run::<S, boundary::By64>(simd),
+            8 => self.run::<S, boundary::By32>(simd),
+            4 => self.run::<S, boundary::By16>(simd),
+            _ => self.run::<S, boundary::By4>(simd),
+        }
+    }
+}
+
+impl Advance<'_> {
+    #[inline(always)]
+    fn run<S: Simd, A: Copy>(self, simd: S) {
+        let per_block = LANES / S::F32_LANES;
+        let count = self.blocks.len() * per_block;
+        let place = |group: usize| (group / per_block, group % per_block * S::F32_LANES);
+        // By name, for an array made by a function is copied several times on its way here.
+        let mut one = Crew::<Packed<S, A>>::new(simd);
+        let mut other = Crew::new(simd);
+        let mut contacts_of_one = Contacts::none(simd);
+        let mut contacts_of_other = Contacts::none(simd);
+        let crews = &mut [&mut one, &mut other];
+        let contacts = &mut [&mut contacts_of_one, &mut contacts_of_other];
+        for first in (0..count).step_by(crews.len()) {
+            let some = crews.len().min(count - first);
+            let (crews, contacts) = (&mut crews[..some], &mut contacts[..some]);
+            for (i, crew) in crews.iter_mut().enumerate() {
+                let (block, lane) = place(first + i);
+                let (block, targets) = (&self.blocks[block], &self.targets[block]);
+                crew.group.load(simd, block, targets, lane);
+            }
+            for _ in 0..self.steps {
+                step(simd, &self.setting, crews, contacts);
+            }
+            for (i, crew) in crews.iter().enumerate() {
+                let (block, lane) = place(first + i);
+                let (block, tally) = (&mut self.blocks[block], &mut self.tallies[block]);
+                crew.group.store(block, tally, lane);
             }
         }
     }

@@ -4,7 +4,7 @@
 //! spatial quantities are in world axes about the root point (the origin of the pelvis), in a frame
 //! that moves with that point's velocity: near the origin `f32` is fine enough for all of them.
 
-use crate::lane::Lane;
+use crate::lane::{Lane, afresh};
 
 /// A vector of three.
 #[derive(Clone, Copy, Debug)]
@@ -141,23 +141,40 @@ impl<L: Lane> Symmetric<L> {
 
     /// R·self·Rᵀ.
     #[inline(always)]
-    fn turned(&self, r: &Rotation<L>) -> Self {
-        // Columns of R·self, then the upper half of its product with Rᵀ.
-        let a =
-            r.x.scale_add(self.xx, r.y.scale_add(self.xy, r.z.scale(self.xz)));
-        let b =
-            r.x.scale_add(self.xy, r.y.scale_add(self.yy, r.z.scale(self.yz)));
+    pub(crate) fn turned(&self, r: &Rotation<L>) -> Self {
+        // A column of R·self after the other, and what it adds to the upper half of the product with Rᵀ.
+        // The rotation is read again for each: nine numbers of it, six sums and a column are too many for
+        // sixteen registers.
         let c =
             r.x.scale_add(self.xz, r.y.scale_add(self.yz, r.z.scale(self.zz)));
-        let entry =
-            |a0: L, b0: L, c0: L, a1: L, b1: L, c1: L| a0.mul_add(a1, b0.mul_add(b1, c0 * c1));
+        let product = Self {
+            xx: c.x * r.z.x,
+            yy: c.y * r.z.y,
+            zz: c.z * r.z.z,
+            xy: c.x * r.z.y,
+            xz: c.x * r.z.z,
+            yz: c.y * r.z.z,
+        };
+        let r = afresh(r);
+        let b =
+            r.x.scale_add(self.xy, r.y.scale_add(self.yy, r.z.scale(self.yz)));
+        let product = product.outer_add(b, r.y);
+        let r = afresh(r);
+        let a =
+            r.x.scale_add(self.xx, r.y.scale_add(self.xy, r.z.scale(self.xz)));
+        product.outer_add(a, r.x)
+    }
+
+    /// The upper half of a·bᵀ + self.
+    #[inline(always)]
+    fn outer_add(&self, a: Vec3<L>, b: Vec3<L>) -> Self {
         Self {
-            xx: entry(a.x, b.x, c.x, r.x.x, r.y.x, r.z.x),
-            yy: entry(a.y, b.y, c.y, r.x.y, r.y.y, r.z.y),
-            zz: entry(a.z, b.z, c.z, r.x.z, r.y.z, r.z.z),
-            xy: entry(a.x, b.x, c.x, r.x.y, r.y.y, r.z.y),
-            xz: entry(a.x, b.x, c.x, r.x.z, r.y.z, r.z.z),
-            yz: entry(a.y, b.y, c.y, r.x.z, r.y.z, r.z.z),
+            xx: a.x.mul_add(b.x, self.xx),
+            yy: a.y.mul_add(b.y, self.yy),
+            zz: a.z.mul_add(b.z, self.zz),
+            xy: a.x.mul_add(b.y, self.xy),
+            xz: a.x.mul_add(b.z, self.xz),
+            yz: a.y.mul_add(b.z, self.yz),
         }
     }
 }
@@ -229,16 +246,10 @@ pub(crate) struct Inertia<L> {
 }
 
 impl<L: Lane> Inertia<L> {
-    /// Of a body with its centre of mass at `centre` and inertia `own` about it in body axes.
+    /// Of a body with its centre of mass at `centre` and inertia `own` about it.
     #[inline(always)]
-    pub(crate) fn of_body(
-        mass: L,
-        centre: Vec3<L>,
-        own: &Symmetric<L>,
-        orientation: &Rotation<L>,
-    ) -> Self {
+    pub(crate) fn of_body(mass: L, centre: Vec3<L>, own: &Symmetric<L>) -> Self {
         let moment = centre.scale(mass);
-        let own = own.turned(orientation);
         let (hx, hy, hz) = (moment.x, moment.y, moment.z);
         let (xx, yy, zz) = (hx * centre.x, hy * centre.y, hz * centre.z);
         Self {

@@ -3,14 +3,15 @@
 //! Separate because the order of the parts is the method. Semi-implicit: velocities from forces at
 //! the old places, places from the new velocities.
 
-use crate::block::{Block, Row, row};
-use crate::contact::{Contacts, Touch};
+use crate::block::row;
+use crate::contact::{self, Contacts, Touch};
 use crate::drive::{AHEAD, Motors, Torque, stop};
 use crate::factor::{self, Factor};
 use crate::ground::Ground;
+use crate::group::Group;
 use crate::kinematics::Walk;
 use crate::lane::{Lane, Real};
-use crate::tree::{BASE, DEGREES, LIMB_FIRST, LIMBS, Tree};
+use crate::tree::{BASE, DEGREES, LIMB_FIRST, Tree};
 use g1::{JOINTS, joints};
 
 /// Joint speed from which the joint brakes itself, rad/s: beyond it nothing is physical any more.
@@ -26,28 +27,42 @@ pub(crate) struct Setting<'a, T> {
     pub(crate) sweeps: usize,
 }
 
-/// Sums over the steps of a control step, for sixteen robots.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Tally<T> {
-    /// Positive work of the motors, J.
-    pub(crate) work: Row<T>,
-    /// Normal impulses on the soles, left and right, N·s.
-    pub(crate) soles: [Row<T>; 2],
-    /// Greatest torque of every joint without sign, N·m.
-    pub(crate) torques: [Row<T>; JOINTS],
-    /// Greatest speed of every joint without sign, rad/s.
-    pub(crate) speeds: [Row<T>; JOINTS],
-}
-
-/// Room for the intermediate results of a step.
-pub(crate) struct Room<L: Lane> {
+/// A group and room for the intermediate results of its step.
+pub(crate) struct Crew<L: Lane> {
+    pub(crate) group: Group<L>,
     walk: Walk<L>,
     root: [L; DEGREES],
-    contacts: Contacts<L>,
     torques: [Torque<L>; JOINTS],
+    velocity: [L; DEGREES],
 }
 
-impl<L: Lane> Room<L> {
+/// Advances groups by one physics step, each with its contacts.
+///
+/// All of them do a part of it before any does the next: the impulses of one group wait for each other,
+/// and those of the others fill the time.
+#[inline(always)]
+pub(crate) fn step<L: Lane>(
+    token: L::Token,
+    setting: &Setting<'_, L::Scalar>,
+    crews: &mut [&mut Crew<L>],
+    contacts: &mut [&mut Contacts<L>],
+) {
+    for crew in &mut *crews {
+        crew.walk.run(token, setting.tree, &crew.group);
+    }
+    for (crew, contacts) in crews.iter_mut().zip(&mut *contacts) {
+        crew.drive(token, setting, contacts);
+    }
+    for (crew, contacts) in crews.iter().zip(&mut *contacts) {
+        crew.touch(token, setting, contacts);
+    }
+    contact::solve(contacts, setting.sweeps);
+    for (crew, contacts) in crews.iter_mut().zip(contacts) {
+        crew.finish(token, setting, contacts);
+    }
+}
+
+impl<L: Lane> Crew<L> {
     #[inline(always)]
     pub(crate) fn new(token: L::Token) -> Self {
         let zero = L::splat(token, L::Scalar::default());
@@ -56,161 +71,170 @@ impl<L: Lane> Room<L> {
             damping: zero,
         };
         Self {
+            group: Group::new(token),
             walk: Walk::new(token),
             root: [zero; DEGREES],
-            contacts: Contacts::none(token),
             torques: [torque; JOINTS],
+            velocity: [zero; DEGREES],
         }
+    }
+
+    /// Motors and stops, the factored matrix, and what all forces but contacts do half-way.
+    #[inline(always)]
+    fn drive(
+        &mut self,
+        token: L::Token,
+        setting: &Setting<'_, L::Scalar>,
+        contacts: &mut Contacts<L>,
+    ) {
+        let dt = L::splat(token, setting.dt);
+        // dt·force on every degree, then half-way to a velocity.
+        let x = &mut contacts.zeta;
+        let (state, walk) = (&self.group.state, &mut self.walk);
+        for (i, velocity) in self.velocity.iter_mut().enumerate() {
+            let at = if i < BASE {
+                row::LINEAR + i
+            } else {
+                row::SPEED + i - BASE
+            };
+            *velocity = state[at];
+        }
+        for i in 0..BASE {
+            x[i] = -(dt * walk.bias[i]);
+        }
+        let mut motor = |joint: usize, diagonal: &mut L| {
+            let drive = Drive {
+                token,
+                setting,
+                dt,
+                joint,
+            };
+            let (q, speed) = (state[row::JOINT + joint], self.velocity[BASE + joint]);
+            let (torque, push) = drive.act(self.group.targets[joint], q, speed, diagonal);
+            self.torques[joint] = torque;
+            let force = torque.at(speed) - walk.bias[BASE + joint];
+            x[BASE + joint] = force.mul_add(dt, push);
+        };
+        motor(joints::WAIST, &mut walk.trunk[BASE][BASE]);
+        for (limb, rows) in walk.limbs.iter_mut().enumerate() {
+            let (prefix, count) = factor::limb_shape(limb);
+            for (k, row) in rows.iter_mut().take(count).enumerate() {
+                motor(LIMB_FIRST[limb] + k, &mut row[prefix + k]);
+            }
+        }
+        factor::factor(&mut walk.trunk, &mut walk.limbs, &mut self.root);
+        let factor = Factor {
+            trunk: &walk.trunk,
+            limbs: &walk.limbs,
+            root: &self.root,
+        };
+        factor.half(x);
+    }
+
+    /// The contacts.
+    #[inline(always)]
+    fn touch(&self, token: L::Token, setting: &Setting<'_, L::Scalar>, contacts: &mut Contacts<L>) {
+        let touch = Touch {
+            token,
+            tree: setting.tree,
+            ground: setting.ground,
+            dt: L::splat(token, setting.dt),
+            friction: self.group.friction,
+        };
+        let factor = Factor {
+            trunk: &self.walk.trunk,
+            limbs: &self.walk.limbs,
+            root: &self.root,
+        };
+        let state = &self.group.state;
+        contacts.find(&touch, &self.walk, factor, state, &self.velocity);
+    }
+
+    /// Impulses, velocities and places after the step, and the sums over steps.
+    #[inline(always)]
+    fn finish(
+        &mut self,
+        token: L::Token,
+        setting: &Setting<'_, L::Scalar>,
+        contacts: &mut Contacts<L>,
+    ) {
+        let dt = L::splat(token, setting.dt);
+        let zero = dt.lit(0.0);
+        let soles = contacts.keep(zero, &mut self.group.state);
+        let sums = &mut self.group.sums;
+        for (sum, impulse) in sums.soles.iter_mut().zip(soles) {
+            *sum = *sum + impulse;
+        }
+        let factor = Factor {
+            trunk: &self.walk.trunk,
+            limbs: &self.walk.limbs,
+            root: &self.root,
+        };
+        factor.velocity(&mut contacts.zeta);
+        let mut power = zero;
+        let velocity = &mut self.velocity;
+        for i in 0..DEGREES {
+            velocity[i] = velocity[i] + contacts.zeta[i];
+        }
+        for joint in 0..JOINTS {
+            let speed = velocity[BASE + joint];
+            let torque = self.torques[joint].at(speed);
+            power = power + (torque * speed).max(zero);
+            sums.torques[joint] = sums.torques[joint].max(torque.abs());
+            sums.speeds[joint] = sums.speeds[joint].max(speed.abs());
+        }
+        sums.work = power.mul_add(dt, sums.work);
+        integrate(dt, velocity, &mut self.group.state);
     }
 }
 
-/// Advances the robots of a block from `lane` on by one physics step. Targets are rows of 23.
-#[inline(always)]
-pub(crate) fn step<L: Lane>(
+/// What acts in one joint.
+struct Drive<'a, L: Lane> {
     token: L::Token,
-    setting: &Setting<'_, L::Scalar>,
-    targets: &[Row<L::Scalar>],
-    lane: usize,
-    block: &mut Block<L::Scalar>,
-    tally: &mut Tally<L::Scalar>,
-    room: &mut Room<L>,
-) {
-    let dt = L::splat(token, setting.dt);
-    let walk = &mut room.walk;
-    walk.run(token, setting.tree, block, lane);
+    setting: &'a Setting<'a, L::Scalar>,
+    dt: L,
+    joint: usize,
+}
 
-    let state = block.rows();
-    let mut velocity = [dt; DEGREES];
-    for (i, velocity) in velocity.iter_mut().enumerate() {
-        let at = if i < BASE {
-            row::LINEAR + i
-        } else {
-            row::SPEED + i - BASE
-        };
-        *velocity = state[at].get(token, lane);
-    }
-    // dt·force on every degree, then half-way to a velocity.
-    let mut x = [dt; DEGREES];
-    for i in 0..BASE {
-        x[i] = -(dt * walk.bias[i]);
-    }
-    let (zero, ahead) = (dt.lit(0.0), dt * dt.lit(AHEAD));
-    let torques = &mut room.torques;
-    for joint in 0..JOINTS {
-        let q: L = state[row::JOINT + joint].get(token, lane);
-        let speed = velocity[BASE + joint];
-        let number = |x: L::Scalar| L::splat(token, x);
+impl<L: Lane> Drive<'_, L> {
+    /// Torque of the motor at a joint's place and speed, and the stop's part of dt·force; what both add to
+    /// the diagonal of the mass matrix is added there.
+    #[inline(always)]
+    fn act(&self, target: L, q: L, speed: L, diagonal: &mut L) -> (Torque<L>, L) {
+        let number = |x: L::Scalar| L::splat(self.token, x);
+        let (motors, hinge) = (self.setting.motors, &self.setting.tree.hinges[self.joint]);
+        let (dt, zero) = (self.dt, self.dt.lit(0.0));
         let torque = Torque::of_motor(
-            number(setting.motors.stiffness[joint]),
-            number(setting.motors.damping[joint]),
-            number(setting.motors.effort[joint]),
-            targets[joint].get(token, lane),
+            number(motors.stiffness[self.joint]),
+            number(motors.damping[self.joint]),
+            number(motors.effort[self.joint]),
+            target,
             q,
             speed,
-            ahead,
+            dt * dt.lit(AHEAD),
         );
-        torques[joint] = torque;
-        let diagonal = diagonal(walk, joint);
-        let hinge = &setting.tree.hinges[joint];
-        let (resistance, push) = stop(
-            number(hinge.lower),
-            number(hinge.upper),
-            q,
-            speed,
-            *diagonal,
-            dt,
-        );
+        let (lower, upper) = (number(hinge.lower), number(hinge.upper));
+        let (resistance, push) = stop(lower, upper, q, speed, *diagonal, dt);
         // A brake within the joint, for a speed that is cut off would take momentum from the robot.
         let racing = number(Real::of(SPEED_LIMIT)).less(speed.abs());
         let brake = diagonal.select(racing, zero);
-        let (resistance, push) = (resistance + brake, brake.neg_mul_add(speed, push));
-        *diagonal = torque.damping.mul_add(dt, *diagonal) + resistance;
-        let force = torque.at(speed) - walk.bias[BASE + joint];
-        x[BASE + joint] = force.mul_add(dt, push);
+        *diagonal = torque.damping.mul_add(dt, *diagonal) + (resistance + brake);
+        (torque, brake.neg_mul_add(speed, push))
     }
-    factor::factor(&mut walk.trunk, &mut walk.limbs, &mut room.root);
-    let walk = &room.walk;
-    let factor = Factor {
-        trunk: &walk.trunk,
-        limbs: &walk.limbs,
-        root: &room.root,
-    };
-    factor.half(&mut x);
-
-    let touch = Touch {
-        token,
-        lane,
-        tree: setting.tree,
-        ground: setting.ground,
-        dt,
-        friction: block.friction.get(token, lane),
-    };
-    let contacts = &mut room.contacts;
-    contacts.find(&touch, walk, factor, block, &velocity);
-    contacts.solve(touch.friction, setting.sweeps, &mut x);
-    let soles = contacts.keep(&touch, block);
-    for (sum, impulse) in tally.soles.iter_mut().zip(soles) {
-        let before: L = sum.get(token, lane);
-        sum.set(lane, before + impulse);
-    }
-
-    factor.velocity(&mut x);
-    let mut power = zero;
-    for i in 0..DEGREES {
-        velocity[i] = velocity[i] + x[i];
-    }
-    for joint in 0..JOINTS {
-        let speed = velocity[BASE + joint];
-        let torque = torques[joint].at(speed);
-        power = power + (torque * speed).max(zero);
-        for (peak, now) in [
-            (&mut tally.torques[joint], torque),
-            (&mut tally.speeds[joint], speed),
-        ] {
-            let before: L = peak.get(token, lane);
-            peak.set(lane, before.max(now.abs()));
-        }
-    }
-    let before: L = tally.work.get(token, lane);
-    tally.work.set(lane, power.mul_add(dt, before));
-    integrate(token, lane, dt, &velocity, block);
-}
-
-/// The diagonal entry of a joint in the mass matrix.
-#[inline(always)]
-fn diagonal<L: Lane>(walk: &mut Walk<L>, joint: usize) -> &mut L {
-    if joint == joints::WAIST {
-        return &mut walk.trunk[BASE][BASE];
-    }
-    let limb = (0..LIMBS)
-        .rev()
-        .find(|&limb| LIMB_FIRST[limb] <= joint)
-        .unwrap_or(0);
-    let (prefix, _) = factor::limb_shape(limb);
-    let k = joint - LIMB_FIRST[limb];
-    &mut walk.limbs[limb][k][prefix + k]
 }
 
 /// Places from new velocities; the base turns by the exponential map.
 #[inline(always)]
-fn integrate<L: Lane>(
-    token: L::Token,
-    lane: usize,
-    dt: L,
-    velocity: &[L; DEGREES],
-    block: &mut Block<L::Scalar>,
-) {
-    let state = block.rows_mut();
+fn integrate<L: Lane>(dt: L, velocity: &[L; DEGREES], state: &mut [L; row::STATE]) {
     for (i, &velocity) in velocity.iter().enumerate() {
         let (place, rate) = match i {
             0..3 => (Some(row::POSITION + i), row::LINEAR + i),
             3..BASE => (None, row::LINEAR + i),
             _ => (Some(row::JOINT + i - BASE), row::SPEED + i - BASE),
         };
-        state[rate].set(lane, velocity);
+        state[rate] = velocity;
         if let Some(place) = place {
-            let before: L = state[place].get(token, lane);
-            state[place].set(lane, velocity.mul_add(dt, before));
+            state[place] = velocity.mul_add(dt, state[place]);
         }
     }
     let half = dt * dt.lit(0.5);
@@ -227,8 +251,8 @@ fn integrate<L: Lane>(
         .mul_add(square, dt.lit(-0.5))
         .mul_add(square, one);
     let (a, b, c) = (a * sinc, b * sinc, c * sinc);
-    let get = |i: usize| -> L { state[row::QUATERNION + i].get(token, lane) };
-    let (w, i, j, k) = (get(0), get(1), get(2), get(3));
+    let q = row::QUATERNION;
+    let (w, i, j, k) = (state[q], state[q + 1], state[q + 2], state[q + 3]);
     let turned = [
         k.neg_mul_add(c, j.neg_mul_add(b, i.neg_mul_add(a, w * cos))),
         j.neg_mul_add(c, k.mul_add(b, w.mul_add(a, i * cos))),
@@ -239,6 +263,6 @@ fn integrate<L: Lane>(
     let norm = w.mul_add(w, i.mul_add(i, j.mul_add(j, k * k)));
     let scale = one / norm.sqrt();
     for (at, value) in turned.into_iter().enumerate() {
-        state[row::QUATERNION + at].set(lane, value * scale);
+        state[q + at] = value * scale;
     }
 }

@@ -33,6 +33,8 @@ pub(crate) const LIMB_FIRST: [usize; LIMBS] = [
 pub const POINTS: usize = 28;
 /// Points on the soles, the left foot's first.
 pub const SOLE_POINTS: usize = 8;
+/// Soles: left, right.
+pub(crate) const SOLES: usize = 2;
 
 /// A point that may touch the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,6 +152,8 @@ pub(crate) struct Hinge<T> {
 #[derive(Clone, Debug)]
 pub(crate) struct Tree<T> {
     pub(crate) hinges: [Hinge<T>; JOINTS],
+    /// What [`inertial`] says of every nominal body.
+    pub(crate) inertials: [[T; 10]; BODIES],
     pub(crate) points: [[T; 3]; POINTS],
     /// Points of every body: indices into `points`, by first and one past the last in `order`.
     pub(crate) of_body: [(usize, usize); BODIES],
@@ -202,6 +206,7 @@ impl<T: Real> Tree<T> {
         });
         Self {
             hinges,
+            inertials: std::array::from_fn(|body| inertial(body, 0.0, [0.0; 3]).map(T::of)),
             points: POINT_TABLE.map(|point| point.at.map(T::of)),
             of_body,
             of_limb,

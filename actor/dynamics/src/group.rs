@@ -1,0 +1,116 @@
+//! The robots of one register, taken out of their block for a control step.
+//!
+//! Separate because a block's rows are sixteen wide on every machine. Here every number fills a register
+//! and lies at a place that the compiler knows: nothing is looked up by lane within a step, and a
+//! machine of eight lanes does not drag the other eight through its caches.
+
+use crate::block::{Block, Row, row};
+use crate::lane::Lane;
+use crate::tree::SOLES;
+use g1::JOINTS;
+
+/// State, make, targets and sums of the robots in a register.
+pub(crate) struct Group<L> {
+    pub(crate) state: [L; row::STATE],
+    /// Mass, centre of mass and inertia of the torso, the one body that varies.
+    pub(crate) torso: [L; row::PER_BODY],
+    pub(crate) friction: L,
+    /// Target positions of the joints, rad.
+    pub(crate) targets: [L; JOINTS],
+    pub(crate) sums: Sums<L>,
+}
+
+/// Sums over the steps of a control step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sums<L> {
+    /// Positive work of the motors, J.
+    pub(crate) work: L,
+    /// Normal impulses on the soles, left and right, N·s.
+    pub(crate) soles: [L; SOLES],
+    /// Greatest torque of every joint without sign, N·m.
+    pub(crate) torques: [L; JOINTS],
+    /// Greatest speed of every joint without sign, rad/s.
+    pub(crate) speeds: [L; JOINTS],
+}
+
+/// [`Sums`] of the robots of a block.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Tally<T> {
+    pub(crate) work: Row<T>,
+    pub(crate) soles: [Row<T>; SOLES],
+    pub(crate) torques: [Row<T>; JOINTS],
+    pub(crate) speeds: [Row<T>; JOINTS],
+}
+
+impl<L: Lane> Group<L> {
+    #[inline(always)]
+    pub(crate) fn new(token: L::Token) -> Self {
+        let zero = L::splat(token, L::Scalar::default());
+        Self {
+            state: [zero; row::STATE],
+            torso: [zero; row::PER_BODY],
+            friction: zero,
+            targets: [zero; JOINTS],
+            sums: Sums {
+                work: zero,
+                soles: [zero; SOLES],
+                torques: [zero; JOINTS],
+                speeds: [zero; JOINTS],
+            },
+        }
+    }
+
+    /// Takes the robots of a block from `lane` on, with sums of nothing.
+    #[inline(always)]
+    pub(crate) fn load(
+        &mut self,
+        token: L::Token,
+        block: &Block<L::Scalar>,
+        targets: &[Row<L::Scalar>; JOINTS],
+        lane: usize,
+    ) {
+        fill(token, &mut self.state, block.rows(), lane);
+        fill(token, &mut self.torso, block.torso(), lane);
+        fill(token, &mut self.targets, targets, lane);
+        self.friction = block.friction.get(token, lane);
+        let zero = L::splat(token, L::Scalar::default());
+        self.sums.work = zero;
+        self.sums.soles = [zero; SOLES];
+        self.sums.torques = [zero; JOINTS];
+        self.sums.speeds = [zero; JOINTS];
+    }
+
+    /// Puts the robots back.
+    #[inline(always)]
+    pub(crate) fn store(
+        &self,
+        block: &mut Block<L::Scalar>,
+        tally: &mut Tally<L::Scalar>,
+        lane: usize,
+    ) {
+        spill(&self.state, block.rows_mut(), lane);
+        tally.work.set(lane, self.sums.work);
+        spill(&self.sums.soles, &mut tally.soles, lane);
+        spill(&self.sums.torques, &mut tally.torques, lane);
+        spill(&self.sums.speeds, &mut tally.speeds, lane);
+    }
+}
+
+#[inline(always)]
+fn fill<L: Lane, const N: usize>(
+    token: L::Token,
+    to: &mut [L; N],
+    from: &[Row<L::Scalar>; N],
+    lane: usize,
+) {
+    for (to, from) in to.iter_mut().zip(from) {
+        *to = from.get(token, lane);
+    }
+}
+
+#[inline(always)]
+fn spill<L: Lane, const N: usize>(from: &[L; N], to: &mut [Row<L::Scalar>; N], lane: usize) {
+    for (from, to) in from.iter().zip(to) {
+        to.set(lane, *from);
+    }
+}
