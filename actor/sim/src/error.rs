@@ -26,9 +26,9 @@ pub enum SimError {
         /// Environments of this fleet.
         expected: usize,
     },
-    /// The snapshot is of the other physics engine.
+    /// The snapshot is of the other physics engine, or of a program that kept more or less of each robot.
     #[error(
-        "the snapshot is not of this fleet's physics, {expected:?}; continue it with the task.physics that it began with"
+        "the snapshot is not of this fleet's physics, {expected:?}, as this program has it; continue it with the task.physics and the program that it began with"
     )]
     Engine {
         /// Engine of this fleet.
