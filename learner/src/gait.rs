@@ -1,4 +1,7 @@
 //! Gait measures of a batch: the one place that knows how its rows follow each other in time.
+//!
+//! They are of the robots that are told to go forward or back, if there are any. Hips of who steps aside, turns or
+//! stands are no less in phase than out of it, and the mean of all said "shuffle" of robots that all did as told.
 
 use amp::{Batch, Segment};
 use g1::gait::{Feet, Gait, Pace, Signs, Verdict, speed_use};
@@ -11,6 +14,9 @@ const CONTROL_HZ: f64 = 50.0;
 
 /// Where the feet are takes forward kinematics: one robot in so many is enough for a mean.
 const FEET_OF_EVERY: usize = 4;
+
+/// From this commanded speed on (m/s) a robot is told to go forward or back.
+const SLOWEST: f32 = 0.2;
 
 /// Iterations that are judged together in the log: a verdict of a single batch flickers.
 const JUDGED_TOGETHER: u64 = 10;
@@ -28,13 +34,11 @@ pub(crate) struct Measures {
 }
 
 impl Measures {
-    /// Of all robots of a batch, with the mean length of its episodes that ended (steps).
+    /// Of a batch, with the mean length of its episodes that ended (steps).
     pub(crate) fn of(batch: &Batch, episode_length: Option<f64>) -> Self {
-        let mut measures = Self::default();
-        let mut first = 0;
-        for segment in batch.segments() {
-            measures.add(batch, first, *segment);
-            first += segment.rows();
+        let mut measures = Self::of_those(batch, is_along);
+        if measures.steps == 0.0 {
+            measures = Self::of_those(batch, |_| true);
         }
         if let Some(steps) = episode_length {
             measures.seconds_upright = steps / CONTROL_HZ;
@@ -43,17 +47,37 @@ impl Measures {
         measures
     }
 
+    /// Of the steps whose command is of a kind.
+    fn of_those(batch: &Batch, counts: impl Fn([f32; 3]) -> bool) -> Self {
+        let mut measures = Self::default();
+        let mut first = 0;
+        for segment in batch.segments() {
+            measures.add(batch, first, *segment, &counts);
+            first += segment.rows();
+        }
+        measures
+    }
+
     /// Adds a rollout whose rows begin at `first`.
-    fn add(&mut self, batch: &Batch, first: usize, segment: Segment) {
+    fn add(
+        &mut self,
+        batch: &Batch,
+        first: usize,
+        segment: Segment,
+        counts: &impl Fn([f32; 3]) -> bool,
+    ) {
         let robots = segment.environments;
         for step in 0..segment.steps {
             for robot in 0..robots {
                 let row = first + step * robots + robot;
+                let seen = &batch.observations[row * OBSERVATION..][..OBSERVATION];
+                let command = std::array::from_fn(|i| seen[COMMAND.start + i]);
+                if !counts(command) {
+                    continue;
+                }
                 let began = step == 0 || batch.ends[row - robots] != 0.0;
                 let before = (!began).then(|| forces(batch, row - robots));
                 let features = &batch.next_features[row * FEATURES..][..FEATURES];
-                let seen = &batch.observations[row * OBSERVATION..][..OBSERVATION];
-                let command = std::array::from_fn(|i| seen[COMMAND.start + i]);
                 self.gait.add(features, forces(batch, row), before);
                 // Upright robots: base and heading frame differ by the small tilt.
                 self.pace.add(command, [features[1], features[2]]);
@@ -96,6 +120,11 @@ impl Measures {
         let upright = (self.lives > 0.0).then(|| self.seconds_upright / self.lives);
         Verdict::of(&Signs::of(&self.gait, &self.pace, upright, CONTROL_HZ))
     }
+}
+
+/// Whether a command (m/s, m/s, rad/s) asks for a way that is more forward or back than aside.
+fn is_along([forward, left, _]: [f32; 3]) -> bool {
+    forward.abs() >= SLOWEST && forward.abs() >= left.abs()
 }
 
 /// Left and right foot force in a row, N.
@@ -182,6 +211,25 @@ mod tests {
         // Robot 0 alone, steps 1 and 2, after which the next gravity is known; one landing, on
         // sliding feet: 2 · 0.5 m/s · 20 ms.
         assert!((measures.slip_per_stride().unwrap() - 0.02).abs() < 1e-6);
+    }
+
+    #[test]
+    fn who_is_told_to_go_aside_is_not_asked_unless_all_are() {
+        let mut mixed = batch(&[[(LEFT, 0.3), (LEFT, 0.3)], [(RIGHT, -0.3), (LEFT, 0.3)]]);
+        for step in 0..2 {
+            let other = 2 * step + 1;
+            mixed.next_features[other * FEATURES + 13] = 0.3;
+            mixed.observations[other * OBSERVATION + COMMAND.start] = 0.1;
+        }
+        // The robot that walks has its hips at ±.3 and ∓.3, the other both at .3.
+        let correlation = Measures::of(&mixed, None).gait.hip_correlation();
+        assert!((correlation.unwrap() + 1.0).abs() < 1e-9);
+        for row in 0..4 {
+            mixed.observations[row * OBSERVATION + COMMAND.start] = 0.1;
+        }
+        // Of both: left .3 −.3 .3 .3, right −.3 .3 .3 .3, covariance −.0225, variance .0675.
+        let correlation = Measures::of(&mixed, None).gait.hip_correlation();
+        assert!((correlation.unwrap() + 1.0 / 3.0).abs() < 1e-6);
     }
 
     #[test]
