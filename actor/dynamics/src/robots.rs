@@ -162,7 +162,7 @@ impl Robots {
         let time = self.solver.dt * steps as f32;
         Effort {
             energy: tally.work.0[lane],
-            foot_forces: [0, 1].map(|foot| tally.soles[foot].0[lane] / time),
+            foot_forces: [tally.soles[0].0[lane] / time, tally.soles[1].0[lane] / time],
         }
     }
 

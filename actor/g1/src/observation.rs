@@ -43,7 +43,8 @@ pub fn policy_observation(
 ) {
     assert_eq!(out.len(), OBSERVATION, "an observation has 82 numbers");
     write_base(state, out);
-    out[GRAVITY].copy_from_slice(state.projected_gravity().as_slice());
+    let gravity: [f32; 3] = state.projected_gravity().into();
+    out[GRAVITY].copy_from_slice(&gravity);
     out[COMMAND].copy_from_slice(command);
     for (i, relative) in out[JOINT_POSITION].iter_mut().enumerate() {
         *relative = state.joint_positions[i] - DEFAULT_POSE[i];
@@ -91,10 +92,16 @@ pub fn state_of(features: &[f32], gravity: [f32; 3]) -> RobotState {
     }
 }
 
+#[inline]
 fn write_base(state: &RobotState, out: &mut [f32]) {
     out[HEIGHT] = state.position.z;
-    out[LINEAR_VELOCITY].copy_from_slice(state.velocity_in_base().as_slice());
-    out[ANGULAR_VELOCITY].copy_from_slice(state.angular_velocity_in_base().as_slice());
+    // Arrays, for the length of a matrix' slice is not known to the compiler, and to copy it is a call.
+    let (linear, angular): ([f32; 3], [f32; 3]) = (
+        state.velocity_in_base().into(),
+        state.angular_velocity_in_base().into(),
+    );
+    out[LINEAR_VELOCITY].copy_from_slice(&linear);
+    out[ANGULAR_VELOCITY].copy_from_slice(&angular);
 }
 
 #[cfg(test)]
