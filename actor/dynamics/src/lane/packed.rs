@@ -16,7 +16,7 @@ pub struct Packed<S: Simd, A> {
 }
 
 /// Boundaries in memory. A vector that lies across two cache lines takes two of everything: with vectors
-/// of 32 bytes anywhere a step took a ninth longer.
+/// of 32 bytes anywhere a step took a tenth longer.
 pub mod boundary {
     macro_rules! boundaries {
         ($($name:ident $bytes:literal)*) => {
