@@ -79,6 +79,16 @@ impl<L: Lane> Crew<L> {
         }
     }
 
+    /// The mass matrix after [`factor::factor`].
+    #[inline(always)]
+    fn factor(&self) -> Factor<'_, L> {
+        Factor {
+            trunk: &self.walk.trunk,
+            limbs: &self.walk.limbs,
+            root: &self.root,
+        }
+    }
+
     /// Motors and stops, the factored matrix, and what all forces but contacts do half-way.
     #[inline(always)]
     fn drive(
@@ -123,12 +133,7 @@ impl<L: Lane> Crew<L> {
             }
         }
         factor::factor(&mut walk.trunk, &mut walk.limbs, &mut self.root);
-        let factor = Factor {
-            trunk: &walk.trunk,
-            limbs: &walk.limbs,
-            root: &self.root,
-        };
-        factor.half(x);
+        self.factor().half(x);
     }
 
     /// The contacts.
@@ -141,13 +146,8 @@ impl<L: Lane> Crew<L> {
             dt: L::splat(token, setting.dt),
             friction: self.group.friction,
         };
-        let factor = Factor {
-            trunk: &self.walk.trunk,
-            limbs: &self.walk.limbs,
-            root: &self.root,
-        };
         let state = &self.group.state;
-        contacts.find(&touch, &self.walk, factor, state, &self.velocity);
+        contacts.find(&touch, &self.walk, self.factor(), state, &self.velocity);
     }
 
     /// Impulses, velocities and places after the step, and the sums over steps.
@@ -160,17 +160,12 @@ impl<L: Lane> Crew<L> {
     ) {
         let dt = L::splat(token, setting.dt);
         let zero = dt.lit(0.0);
+        self.factor().velocity(&mut contacts.zeta);
         let soles = contacts.keep(zero, &mut self.group.state);
         let sums = &mut self.group.sums;
         for (sum, impulse) in sums.soles.iter_mut().zip(soles) {
             *sum = *sum + impulse;
         }
-        let factor = Factor {
-            trunk: &self.walk.trunk,
-            limbs: &self.walk.limbs,
-            root: &self.root,
-        };
-        factor.velocity(&mut contacts.zeta);
         let mut power = zero;
         let velocity = &mut self.velocity;
         for i in 0..DEGREES {
