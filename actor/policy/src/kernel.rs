@@ -1,4 +1,4 @@
-//! One linear layer on a block of rows: the product, the bias and the activation in one pass.
+//! One linear layer on a block of rows: the product and the bias in one pass.
 //!
 //! A tile of up to 6 rows and 32 columns (16 with AVX2) is kept in registers while the loop runs along the inputs. The
 //! source is generic over the width of vectors; `pulp` compiles it for AVX-512, AVX2, NEON and plain numbers and enters
@@ -6,8 +6,6 @@
 //! they agree bit by bit, whatever the tile.
 
 use pulp::{Arch, Simd, WithSimd};
-
-use crate::elu::elu;
 
 /// Columns of a panel of weights.
 pub(crate) const COLUMNS: usize = 32;
@@ -17,13 +15,6 @@ pub(crate) const COLUMNS: usize = 32;
 /// vectors each and 3 rows one sum lived in memory: 1.9 times slower.
 pub(crate) const TILE_ROWS: usize = 6;
 
-/// What is done with a sum before it is stored.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Activation {
-    Elu,
-    None,
-}
-
 /// Values of several rows, one row every `stride` numbers.
 #[derive(Clone, Copy)]
 pub(crate) struct Rows<'a> {
@@ -32,7 +23,7 @@ pub(crate) struct Rows<'a> {
 }
 
 /// 32 columns of a layer's result: for each of `count` rows and each column c
-/// `output[row·output_stride + c] = activation(bias[c] + Σₖ input[row][k]·panel[k][c])`.
+/// `output[row·output_stride + c] = bias[c] + Σₖ input[row][k]·panel[k][c]`.
 pub(crate) struct Product<'a> {
     pub(crate) input: Rows<'a>,
     pub(crate) count: usize,
@@ -41,7 +32,6 @@ pub(crate) struct Product<'a> {
     pub(crate) bias: &'a [f32; COLUMNS],
     pub(crate) output: &'a mut [f32],
     pub(crate) output_stride: usize,
-    pub(crate) activation: Activation,
 }
 
 impl Product<'_> {
@@ -125,11 +115,6 @@ impl Product<'_> {
             for vector in 0..VECTORS {
                 vectors[vector] = done[row][vector];
             }
-            if self.activation == Activation::Elu {
-                for column in 0..COLUMNS / PARTS {
-                    output[column] = elu(output[column]);
-                }
-            }
         }
     }
 }
@@ -177,7 +162,6 @@ mod tests {
                 bias: &bias,
                 output: &mut output,
                 output_stride: COLUMNS,
-                activation: Activation::Elu,
             }
             .evaluate(arch);
             output

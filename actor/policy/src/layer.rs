@@ -2,7 +2,15 @@
 
 use pulp::Arch;
 
-use crate::kernel::{Activation, COLUMNS, Product, Rows};
+use crate::elu;
+use crate::kernel::{COLUMNS, Product, Rows};
+
+/// What is done with a layer's sums.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Activation {
+    Elu,
+    None,
+}
 
 /// Weights `[in][out]` regrouped into panels of 32 outputs, padded with zeros.
 #[derive(Clone, Debug)]
@@ -61,9 +69,11 @@ impl Layer {
                 bias,
                 output: &mut output[index * COLUMNS..],
                 output_stride: self.padded_outputs(),
-                activation: self.activation,
             }
             .evaluate(arch);
+        }
+        if self.activation == Activation::Elu {
+            elu::apply(arch, &mut output[..count * self.padded_outputs()]);
         }
     }
 }

@@ -10,7 +10,7 @@
 //!
 //! **Why no matrix library.** The weights change once per rollout and are used hundreds of times in between, so they are
 //! packed once. A general product packs and allocates in every call, and picks its kernel by the size of the batch, which
-//! changes last bits. The kernel here costs with bias, normalisation and ELU about a tenth more than the `gemm` crate's
+//! changes last bits. The kernel here costs with bias, normalisation and ELU no more than a tenth more than the `gemm` crate's
 //! bare product for 16 rows and more, and a third less for one row.
 //!
 //! Nothing of ours is imported.

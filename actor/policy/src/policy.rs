@@ -4,8 +4,8 @@ use pulp::Arch;
 use rand::Rng;
 
 use crate::gaussian::Gaussian;
-use crate::kernel::{Activation, Rows, TILE_ROWS};
-use crate::layer::Layer;
+use crate::kernel::{Rows, TILE_ROWS};
+use crate::layer::{Activation, Layer};
 use crate::shape::{INVERSE_DEVIATION, MEAN, SIGMA};
 use crate::{INPUTS, OUTPUTS, PolicyError, Shape};
 

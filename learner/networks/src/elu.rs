@@ -6,14 +6,12 @@
 /// x above zero, eˣ − 1 below. Relative error below 3·10⁻⁷; NaN stays NaN.
 ///
 /// With n = round(x / ln 2) and r = x − n·ln 2, |r| ≤ ln 2 / 2:  eˣ − 1 = 2ⁿ·(eʳ − 1) + (2ⁿ − 1).
-/// eʳ − 1 is its Taylor series up to r⁷; near zero n = 0 and the second part vanishes, so that nothing cancels.
+/// eʳ − 1 is r times the polynomial of degree five nearest to (eʳ − 1)/r with 1 at zero (minimax, relative error 1.3·10⁻⁸);
+/// near zero n = 0 and the second part vanishes, so that nothing cancels.
 #[inline(always)]
 pub(crate) fn elu(x: f32) -> f32 {
     /// Adding 1.5·2²³ rounds a small number to an integer, which then stands in the lowest bits.
     const ROUNDING: f32 = 12_582_912.0;
-    /// ln 2 in two parts; the first has few bits, so that n times it is exact.
-    const LN_2_HIGH: f32 = 355.0 / 512.0;
-    const LN_2_LOW: f32 = -2.121_944_4e-4;
     /// From here down eˣ is lost beside 1, and 2ⁿ is still a normal number.
     const LOWEST: f32 = -80.0;
 
@@ -22,10 +20,11 @@ pub(crate) fn elu(x: f32) -> f32 {
     let below = if below < LOWEST { LOWEST } else { below };
     let shifted = below.mul_add(std::f32::consts::LOG2_E, ROUNDING);
     let n = shifted - ROUNDING;
-    let r = n.mul_add(-LN_2_LOW, n.mul_add(-LN_2_HIGH, below));
+    // The `f32` nearest to ln 2 is 1.9·10⁻⁹ off: 2ⁿ·n times that is lost in the sum below.
+    let r = n.mul_add(-std::f32::consts::LN_2, below);
     let power = f32::from_bits((shifted.to_bits() << 23).wrapping_add(127 << 23));
-    let mut series = 1.0 / 5040.0;
-    for coefficient in [1.0 / 720.0, 1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0] {
+    let mut series = 0.001_388_252_6;
+    for coefficient in [0.008_366_521, 0.041_667_2, 0.166_665_43, 0.5, 1.0] {
         series = r.mul_add(series, coefficient);
     }
     let negative = power.mul_add(r * series, power - 1.0);

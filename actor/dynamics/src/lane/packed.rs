@@ -111,15 +111,15 @@ impl<S: Simd, A: Copy> Lane for Packed<S, A> {
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        (-self).max(self)
+        self.with(self.simd.abs_f32s(self.value))
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        other.select(other.less(self), self)
+        self.with(self.simd.min_f32s(other.value, self.value))
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        other.select(self.less(other), self)
+        self.with(self.simd.max_f32s(other.value, self.value))
     }
     #[inline(always)]
     fn less(self, other: Self) -> S::m32s {
