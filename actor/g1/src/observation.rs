@@ -41,10 +41,9 @@ pub fn policy_observation(
     previous_action: &[f32; JOINTS],
     out: &mut [f32],
 ) {
-    assert_eq!(out.len(), OBSERVATION, "an observation has 82 numbers");
+    let out: &mut [f32; OBSERVATION] = out.try_into().expect("an observation has 82 numbers");
     write_base(state, out);
-    let gravity: [f32; 3] = state.projected_gravity().into();
-    out[GRAVITY].copy_from_slice(&gravity);
+    put(out, GRAVITY, &state.projected_gravity());
     out[COMMAND].copy_from_slice(command);
     for (i, relative) in out[JOINT_POSITION].iter_mut().enumerate() {
         *relative = state.joint_positions[i] - DEFAULT_POSE[i];
@@ -59,7 +58,9 @@ pub fn policy_observation(
 /// If `out` is not 53 long.
 #[inline]
 pub fn features(state: &RobotState, out: &mut [f32]) {
-    assert_eq!(out.len(), FEATURES, "the features of a step are 53 numbers");
+    let out: &mut [f32; FEATURES] = out
+        .try_into()
+        .expect("the features of a step are 53 numbers");
     write_base(state, out);
     out[FEATURE_JOINT_POSITION].copy_from_slice(&state.joint_positions);
     out[FEATURE_JOINT_VELOCITY].copy_from_slice(&state.joint_velocities);
@@ -93,15 +94,18 @@ pub fn state_of(features: &[f32], gravity: [f32; 3]) -> RobotState {
 }
 
 #[inline]
-fn write_base(state: &RobotState, out: &mut [f32]) {
+fn write_base<const N: usize>(state: &RobotState, out: &mut [f32; N]) {
     out[HEIGHT] = state.position.z;
-    // Arrays, for the length of a matrix' slice is not known to the compiler, and to copy it is a call.
-    let (linear, angular): ([f32; 3], [f32; 3]) = (
-        state.velocity_in_base().into(),
-        state.angular_velocity_in_base().into(),
-    );
-    out[LINEAR_VELOCITY].copy_from_slice(&linear);
-    out[ANGULAR_VELOCITY].copy_from_slice(&angular);
+    put(out, LINEAR_VELOCITY, &state.velocity_in_base());
+    put(out, ANGULAR_VELOCITY, &state.angular_velocity_in_base());
+}
+
+/// Number by number: a copy of a vector or its slice becomes a call.
+#[inline]
+fn put<const N: usize>(out: &mut [f32; N], place: Range<usize>, vector: &Vector3<f32>) {
+    out[place.start] = vector.x;
+    out[place.start + 1] = vector.y;
+    out[place.start + 2] = vector.z;
 }
 
 #[cfg(test)]

@@ -82,7 +82,14 @@ impl RobotState {
     /// Planar velocity in the heading frame, m/s: the world turned by yaw only, x where the robot faces.
     #[inline]
     pub fn velocity_in_heading(&self) -> Vector2<f32> {
-        let (sin, cos) = self.yaw().sin_cos();
+        let (sin, cos) = self.heading();
+        // Sine and cosine of the yaw without an angle: this is asked for several times per step of every robot.
+        let length = (sin * sin + cos * cos).sqrt();
+        let (sin, cos) = if length > 0.0 {
+            (sin / length, cos / length)
+        } else {
+            (0.0, 1.0)
+        };
         let v = self.linear_velocity;
         Vector2::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x)
     }
@@ -90,8 +97,18 @@ impl RobotState {
     /// Heading of the pelvis, rad in (−π, π]: the yaw of R = Rz(yaw)·Ry(pitch)·Rx(roll).
     #[inline]
     pub fn yaw(&self) -> f32 {
+        let (y, x) = self.heading();
+        y.atan2(x)
+    }
+
+    /// Leftward (y) and forward (x) part of the base's x axis on the floor; 0 of both where it points up or down.
+    #[inline]
+    fn heading(&self) -> (f32, f32) {
         let q = self.orientation;
-        (2.0 * (q.w * q.k + q.i * q.j)).atan2(1.0 - 2.0 * (q.j * q.j + q.k * q.k))
+        (
+            2.0 * (q.w * q.k + q.i * q.j),
+            1.0 - 2.0 * (q.j * q.j + q.k * q.k),
+        )
     }
 
     /// Whether every number is finite.

@@ -51,8 +51,6 @@ pub(crate) struct Outcome {
     /// Vertical force on the left and the right sole, mean over the step, N.
     pub(crate) foot_forces: [f32; 2],
     pub(crate) end: End,
-    /// The true state after the step; of a step that broke, the last sound one.
-    pub(crate) state: RobotState,
     /// Whether the step broke: its action or its result was not finite.
     pub(crate) faulty: bool,
 }
@@ -184,7 +182,6 @@ impl Environment {
             energy,
             foot_forces,
             end,
-            state: self.state,
             faulty: false,
         }
     }
@@ -217,6 +214,7 @@ impl Environment {
         self.steps
     }
 
+    /// The true state; of a step that broke, the last sound one.
     pub(crate) fn state(&self) -> &RobotState {
         &self.state
     }
@@ -240,7 +238,6 @@ impl Environment {
             energy: 0.0,
             foot_forces: [0.0; 2],
             end: End::Fall,
-            state: self.state,
             faulty: true,
         }
     }

@@ -30,10 +30,20 @@ pub struct Fleet {
     acted: Vec<bool>,
     observations: Vec<f32>,
     features: Vec<f32>,
-    /// Where each environment's last step led, and whether the step could be used; of no influence
-    /// on the future, and in no snapshot.
-    last: Vec<(RobotState, bool)>,
+    /// What is remembered of each environment's last step; of no influence on the future, and in no snapshot.
+    last: Vec<Last>,
     faults: u64,
+}
+
+/// What a new episode would make forgotten.
+#[derive(Clone, Copy)]
+struct Last {
+    /// Where the step led that ended the last episode.
+    end: RobotState,
+    /// Whether that was the last step.
+    ended: bool,
+    /// Whether the last step could be used; before the first one, none could.
+    whole: bool,
 }
 
 /// What one step of one environment led to, for those who judge a gait.
@@ -170,10 +180,14 @@ impl Fleet {
 
     /// What an environment's last step led to, also where an episode ended with it.
     pub fn last_step(&self, environment: usize) -> LastStep {
-        let (state, whole) = self.last[environment];
+        let last = &self.last[environment];
         LastStep {
-            state,
-            exertion: if whole {
+            state: if last.ended {
+                last.end
+            } else {
+                *self.state(environment)
+            },
+            exertion: if last.whole {
                 self.bodies.exertion(environment)
             } else {
                 Exertion::default()
@@ -226,7 +240,12 @@ impl Fleet {
                 environment.broken()
             };
             self.faults += u64::from(outcome.faulty);
-            self.last[i] = (outcome.state, !outcome.faulty);
+            let last = &mut self.last[i];
+            last.whole = !outcome.faulty;
+            last.ended = outcome.end != End::Running;
+            if last.ended {
+                last.end = *environment.state();
+            }
             out.task_rewards[i] = outcome.task_reward;
             out.energies[i] = outcome.energy;
             out.tracking_errors[i] = outcome.tracking_error;
@@ -234,7 +253,7 @@ impl Fleet {
             out.episode_steps[i] = environment.steps() as f32;
             out.foot_forces[2 * i..][..2].copy_from_slice(&outcome.foot_forces);
             observation::features(
-                &outcome.state,
+                environment.state(),
                 &mut out.next_features[i * FEATURES..][..FEATURES],
             );
             if outcome.end == End::Timeout {
@@ -259,7 +278,11 @@ impl Fleet {
     }
 
     fn forget_last_steps(&mut self) {
-        let of = |environment: &Environment| (*environment.state(), false);
+        let of = |environment: &Environment| Last {
+            end: *environment.state(),
+            ended: false,
+            whole: false,
+        };
         self.last = self.environments.iter().map(of).collect();
     }
 

@@ -266,16 +266,26 @@ impl RandomizationConfig {
         ];
         for (on, range, numbers) in rows {
             if on {
-                for number in &mut observation[numbers] {
-                    *number += uniform(range, rng);
+                for two in observation[numbers].chunks_mut(2) {
+                    // Each half of what the generator gives at a time is as random as the other.
+                    let bits: u64 = rng.random();
+                    two[0] += within(range, bits as u32);
+                    if let Some(second) = two.get_mut(1) {
+                        *second += within(range, (bits >> 32) as u32);
+                    }
                 }
             }
         }
     }
 }
 
-fn uniform([least, greatest]: [f32; 2], rng: &mut impl Rng) -> f32 {
-    least + (greatest - least) * rng.random::<f32>()
+fn uniform(range: [f32; 2], rng: &mut impl Rng) -> f32 {
+    within(range, rng.random())
+}
+
+/// A number of a range, which the upper 24 of 32 random bits say.
+fn within([least, greatest]: [f32; 2], bits: u32) -> f32 {
+    least + (greatest - least) * ((bits >> 8) as f32 / 16_777_216.0)
 }
 
 #[cfg(test)]

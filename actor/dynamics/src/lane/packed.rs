@@ -111,7 +111,8 @@ impl<S: Simd, A: Copy> Lane for Packed<S, A> {
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        self.with(self.simd.abs_f32s(self.value))
+        // `pulp`'s own is a call.
+        (-self).max(self)
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {

@@ -16,6 +16,8 @@ use crate::engine::Engine;
 
 /// Standard deviation of the benchmark's actions; 0.25 rad per unit, as a policy in training moves.
 const EXPLORATION: f32 = 0.5;
+/// Steps until a robot's random actions come again.
+const DRAWN: usize = 1_000;
 /// The kernel's account of this thread: nanoseconds on a core, then nanoseconds waiting for one.
 const ACCOUNT: &str = "/proc/thread-self/schedstat";
 
@@ -141,7 +143,7 @@ impl SimBench {
         )
         .context("building the fleet")?;
         let mut random = Pcg64Mcg::seed_from_u64(self.seed);
-        let mut rows = Rows::new(n);
+        let mut rows = Rows::new(n, &mut random);
         let mut measured = Measured::default();
         // Fresh robots stand; after half a second they do what random actions make them do.
         for warm in [true, false] {
@@ -167,7 +169,7 @@ impl SimBench {
                         &mut rows.means,
                         &mut rows.log_probs,
                     ),
-                    None => rows.shake(&mut random),
+                    None => rows.shake(),
                 }
                 measured.inference += thinking.elapsed().as_secs_f64();
                 rows.step(&mut fleet);
@@ -253,24 +255,31 @@ struct Rows {
     means: Vec<f32>,
     log_probs: Vec<f32>,
     outcome: StepRows,
+    /// Random actions, uniform with the deviation of the exploring policy.
+    drawn: Vec<f32>,
+    /// Where among them the last step's were.
+    at: usize,
 }
 
 impl Rows {
-    fn new(n: usize) -> Self {
+    fn new(n: usize, random: &mut Pcg64Mcg) -> Self {
+        let size = EXPLORATION * 3_f32.sqrt();
+        let number = |_| size * (2.0 * random.random::<f32>() - 1.0);
         Self {
             actions: vec![0.0; n * g1::ACTION],
             means: vec![0.0; n * g1::ACTION],
             log_probs: vec![0.0; n],
             outcome: StepRows::filled(n, 0.0),
+            drawn: (0..(n + DRAWN) * g1::ACTION).map(number).collect(),
+            at: 0,
         }
     }
 
-    /// Random actions, uniform with the deviation of the exploring policy.
-    fn shake(&mut self, random: &mut Pcg64Mcg) {
-        let size = EXPLORATION * 3_f32.sqrt();
-        for action in &mut self.actions {
-            *action = size * (2.0 * random.random::<f32>() - 1.0);
-        }
+    /// Other random actions for everyone.
+    fn shake(&mut self) {
+        self.at = (self.at + g1::ACTION) % (DRAWN * g1::ACTION);
+        let size = self.actions.len();
+        self.actions.copy_from_slice(&self.drawn[self.at..][..size]);
     }
 
     fn step(&mut self, fleet: &mut Fleet) {
