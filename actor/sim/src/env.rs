@@ -7,12 +7,12 @@
 use crate::actuator;
 use crate::kind::Pools;
 use crate::physics::Bodies;
-use crate::randomization::RandomizationConfig;
+use crate::randomization::{RandomizationConfig, SensorNoise};
 use crate::stance::Footing;
 use crate::start::{self, Starts};
 use crate::stray::Astray;
 use crate::task::{self, End, TaskConfig};
-use g1::{JOINTS, RobotState, observation};
+use g1::{JOINTS, OBSERVATION, RobotState, observation};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
@@ -23,6 +23,9 @@ pub(crate) struct Setting {
     pub(crate) randomization: RandomizationConfig,
     /// The table of robots that it leaves alone: every row off.
     pub(crate) plain: RandomizationConfig,
+    /// Sensor noise of both tables.
+    pub(crate) noise: SensorNoise,
+    pub(crate) no_noise: SensorNoise,
     pub(crate) starts: Starts,
     /// The starts by kind of command.
     pub(crate) pools: Pools,
@@ -37,6 +40,15 @@ impl Setting {
             &self.plain
         } else {
             &self.randomization
+        }
+    }
+
+    /// Sensor noise as it counts for a robot.
+    pub(crate) fn noise(&self, robot: usize) -> &SensorNoise {
+        if self.randomization.spares(robot) {
+            &self.no_noise
+        } else {
+            &self.noise
         }
     }
 }
@@ -204,9 +216,9 @@ impl Environment {
     }
 
     /// Writes what the policy sees now, with sensor noise where it is on (82 numbers).
-    pub(crate) fn observe(&mut self, table: &RandomizationConfig, out: &mut [f32]) {
+    pub(crate) fn observe(&mut self, noise: &SensorNoise, out: &mut [f32; OBSERVATION]) {
         observation::policy_observation(&self.state, &self.command, &self.previous_action, out);
-        table.blur(out, &mut self.random);
+        noise.blur(out, &mut self.random);
     }
 
     /// Steps done in this episode.

@@ -4,13 +4,15 @@
 //! floor for an episode ([`Variation`]), one pushes it, five blur what the policy observes; reward,
 //! features and falls always see the true state.
 
+mod noise;
+
+pub(crate) use noise::SensorNoise;
+
 use crate::config::{self, Invalid, range};
 use crate::model::Variation;
-use g1::observation;
 use nalgebra::Vector3;
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
-use std::ops::Range;
 
 /// The `[randomization]` section. Ranges are those of Table I; all rows are on, as in the paper.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -238,54 +240,10 @@ impl RandomizationConfig {
         self.impulse
             .then(|| config::steps(self.impulse_seconds, rng))
     }
-
-    /// Adds sensor noise to a policy observation, a fresh draw each step.
-    pub fn blur(&self, observation: &mut [f32], rng: &mut impl Rng) {
-        let rows: [(bool, [f32; 2], Range<usize>); 5] = [
-            (
-                self.linear_velocity_noise,
-                self.linear_velocity_range,
-                observation::LINEAR_VELOCITY,
-            ),
-            (
-                self.angular_velocity_noise,
-                self.angular_velocity_range,
-                observation::ANGULAR_VELOCITY,
-            ),
-            (self.gravity_noise, self.gravity_range, observation::GRAVITY),
-            (
-                self.joint_position_noise,
-                self.joint_position_range,
-                observation::JOINT_POSITION,
-            ),
-            (
-                self.joint_velocity_noise,
-                self.joint_velocity_range,
-                observation::JOINT_VELOCITY,
-            ),
-        ];
-        for (on, range, numbers) in rows {
-            if on {
-                for two in observation[numbers].chunks_mut(2) {
-                    // Each half of what the generator gives at a time is as random as the other.
-                    let bits: u64 = rng.random();
-                    two[0] += within(range, bits as u32);
-                    if let Some(second) = two.get_mut(1) {
-                        *second += within(range, (bits >> 32) as u32);
-                    }
-                }
-            }
-        }
-    }
 }
 
-fn uniform(range: [f32; 2], rng: &mut impl Rng) -> f32 {
-    within(range, rng.random())
-}
-
-/// A number of a range, which the upper 24 of 32 random bits say.
-fn within([least, greatest]: [f32; 2], bits: u32) -> f32 {
-    least + (greatest - least) * ((bits >> 8) as f32 / 16_777_216.0)
+fn uniform([least, greatest]: [f32; 2], rng: &mut impl Rng) -> f32 {
+    least + (greatest - least) * rng.random::<f32>()
 }
 
 #[cfg(test)]

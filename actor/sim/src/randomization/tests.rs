@@ -3,6 +3,7 @@
 use super::*;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
+use std::ops::Range;
 
 fn rng() -> Pcg64Mcg {
     Pcg64Mcg::seed_from_u64(7)
@@ -131,14 +132,15 @@ fn rows_of_the_sensors() {
     ];
     let mut rng = rng();
     let mut still = [0.25; g1::OBSERVATION];
-    none.blur(&mut still, &mut rng);
+    SensorNoise::of(&none).blur(&mut still, &mut rng);
     assert_eq!(still, [0.25; g1::OBSERVATION]);
     for (switch, numbers, size) in rows {
         let mut config = none.clone();
         switch(&mut config);
+        let noise = SensorNoise::of(&config);
         let mut blur = || {
             let mut observation = [0.0; g1::OBSERVATION];
-            config.blur(&mut observation, &mut rng);
+            noise.blur(&mut observation, &mut rng);
             observation
         };
         for (i, number) in blur().into_iter().enumerate() {
