@@ -19,11 +19,18 @@ pub struct SingleStanceConfig {
     /// Time for which one foot has to stand and the other to swing until all of the share is paid, s.
     /// Default 0.4, nearly half of a stride of the reference gait at 1 m/s.
     pub seconds: f32,
+    /// Commanded forward speed up to which long steps are paid, m/s; from there to a run all of the task reward is for
+    /// obeying. Default: at any speed. Who sets off at once to a high speed has no time for long steps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub walk_to: Option<f32>,
     /// Commanded forward speed from which a run is asked for, m/s: then how long a foot has been in the air
     /// counts, whether the other stands or not. Default: never. Robots walk at 2 m/s, though the clips there
     /// run. With this they ran once they were told nothing else, and went on with it while style counted little.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub run_from: Option<f32>,
+    /// Share of the task reward that is paid for a run, instead of `share`. Default: `share`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub run_share: Option<f32>,
     /// Part of a run's pay that is for flight itself, all of it for 40 ms between one foot's lift-off and the other's
     /// landing. Default 0: then a walk of long steps earns as much as a run, and beside other commands robots that
     /// ran flew less and less.
@@ -48,7 +55,9 @@ impl Default for SingleStanceConfig {
         Self {
             share: 0.3,
             seconds: 0.4,
+            walk_to: None,
             run_from: None,
+            run_share: None,
             flight: 0.0,
             standing: 0.0,
         }
@@ -67,6 +76,18 @@ impl SingleStanceConfig {
             self.flight,
             "say with run_from from which speed on it is paid",
         )?;
+        if let Some(share) = self.run_share {
+            config::share("single_stance.run_share", share)?;
+            config::require(
+                self.run_from.is_some(),
+                "single_stance.run_share",
+                share,
+                "say with run_from from which speed on it counts",
+            )?;
+        }
+        if let Some(speed) = self.walk_to {
+            config::at_least("single_stance.walk_to", speed, 0.0)?;
+        }
         config::share("single_stance.standing", self.standing)?;
         self.run_from.map_or(Ok(()), |speed| {
             config::at_least("single_stance.run_from", speed, 0.5)
@@ -76,7 +97,7 @@ impl SingleStanceConfig {
     /// Factor of the task reward, 1 − s·(1 − p) with p = min(t/T, 1) up to t = 2·T and 0 beyond. t is how
     /// long the feet have been as they are, the shorter of the two, if just one of them stands, and 0
     /// otherwise; of a run, how long the foot that was lifted first is in the air, and then f of p is
-    /// min(flight/40 ms, 1) instead. Who is told to stand gets 1 with both feet down, else 1 less `standing`.
+    /// min(flight/40 ms, 1) instead, and s may be another. Between `walk_to` and a run it is 1. Who is told to stand gets 1 with both feet down, else 1 less `standing`.
     /// Without the end at 2·T those told to turn on the spot stood on one leg.
     pub(crate) fn factor(&self, command: &[f32; 3], feet: &Footing) -> f32 {
         if *command == [0.0; 3] {
@@ -87,17 +108,21 @@ impl SingleStanceConfig {
             };
         }
         let runs = self.run_from.is_some_and(|speed| command[0] >= speed);
+        if !runs && self.walk_to.is_some_and(|speed| command[0] > speed) {
+            return 1.0;
+        }
         let time = if runs {
             feet.swing()
         } else {
             feet.single_stance()
         };
         let share = time / self.seconds;
-        let mut paid = if share > 2.0 { 0.0 } else { share.min(1.0) };
-        if runs {
-            paid += self.flight * ((feet.flight() / FLIGHT).min(1.0) - paid);
+        let paid = if share > 2.0 { 0.0 } else { share.min(1.0) };
+        if !runs {
+            return 1.0 - self.share * (1.0 - paid);
         }
-        1.0 - self.share * (1.0 - paid)
+        let paid = paid + self.flight * ((feet.flight() / FLIGHT).min(1.0) - paid);
+        1.0 - self.run_share.unwrap_or(self.share) * (1.0 - paid)
     }
 }
 
@@ -250,6 +275,20 @@ mod tests {
     }
 
     #[test]
+    fn beyond_a_walk_and_below_a_run_only_obeying_is_paid() {
+        let config = SingleStanceConfig {
+            walk_to: Some(1.2),
+            run_from: Some(1.8),
+            run_share: Some(0.1),
+            ..SingleStanceConfig::default()
+        };
+        // Both feet down: no long step is paid for, and neither is flight.
+        let feet = Footing::default();
+        let factors = [1.2, 1.3, 1.8].map(|speed| config.factor(&[speed, 0.0, 0.0], &feet));
+        assert_eq!(factors, [0.7, 1.0, 0.9]);
+    }
+
+    #[test]
     fn who_is_told_to_stand_is_not_asked_to_lift_a_foot() {
         let feet = Footing::default();
         let config = SingleStanceConfig::default();
@@ -280,8 +319,7 @@ mod tests {
                 share,
                 seconds,
                 run_from: Some(0.2),
-                flight: 0.0,
-                standing: 0.0,
+                ..SingleStanceConfig::default()
             };
             config.validate().unwrap_err().to_string()
         };
@@ -294,6 +332,18 @@ mod tests {
         };
         let refused = unpaid.validate().unwrap_err().to_string();
         assert!(refused.contains("single_stance.flight = 0.5"), "{refused}");
+        let never = SingleStanceConfig {
+            run_share: Some(0.2),
+            ..SingleStanceConfig::default()
+        };
+        let refused = never.validate().unwrap_err().to_string();
+        assert!(refused.contains("run_share = 0.2"), "{refused}");
+        let backward = SingleStanceConfig {
+            walk_to: Some(-1.0),
+            ..SingleStanceConfig::default()
+        };
+        let refused = backward.validate().unwrap_err().to_string();
+        assert!(refused.contains("walk_to = -1"), "{refused}");
         SingleStanceConfig::default().validate().unwrap();
     }
 }

@@ -51,9 +51,7 @@ fn the_share_of_long_steps_is_paid_to_who_stands_on_one_foot() {
             single_stance: Some(SingleStanceConfig {
                 share: 0.5,
                 seconds: 0.1,
-                run_from: None,
-                flight: 0.0,
-                standing: 0.0,
+                ..SingleStanceConfig::default()
             }),
             ..plain.clone()
         };
