@@ -36,6 +36,10 @@ pub(crate) struct Sums<L> {
 /// [`Sums`] of the robots of a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Tally<T> {
+    /// Of the state after the last step: 0, or NaN if any of its numbers is not finite.
+    pub(crate) odd: Row<T>,
+    /// Likewise: the greatest part of the pelvis' velocity and angular velocity without sign, m/s or rad/s.
+    pub(crate) fastest: Row<T>,
     pub(crate) work: Row<T>,
     pub(crate) soles: [Row<T>; SOLES],
     pub(crate) torques: [Row<T>; JOINTS],
@@ -89,10 +93,31 @@ impl<L: Lane> Group<L> {
         lane: usize,
     ) {
         spill(&self.state, block.rows_mut(), lane);
+        let (odd, fastest) = self.soundness();
+        tally.odd.set(lane, odd);
+        tally.fastest.set(lane, fastest);
         tally.work.set(lane, self.sums.work);
         spill(&self.sums.soles, &mut tally.soles, lane);
         spill(&self.sums.torques, &mut tally.torques, lane);
         spill(&self.sums.speeds, &mut tally.speeds, lane);
+    }
+}
+
+impl<L: Lane> Group<L> {
+    /// What [`Tally::odd`] and [`Tally::fastest`] hold.
+    #[inline(always)]
+    fn soundness(&self) -> (L, L) {
+        let zero = self.sums.work.lit(0.0);
+        // Infinity less itself is NaN as well. Several sums, for each addition waits for the one before.
+        let mut odd = [zero; 4];
+        for (i, &number) in self.state[..row::IMPULSE].iter().enumerate() {
+            odd[i % 4] = odd[i % 4] + (number - number);
+        }
+        let mut fastest = zero;
+        for &speed in &self.state[row::LINEAR..row::JOINT] {
+            fastest = fastest.max(speed.abs());
+        }
+        ((odd[0] + odd[1]) + (odd[2] + odd[3]), fastest)
     }
 }
 

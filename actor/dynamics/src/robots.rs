@@ -176,19 +176,12 @@ impl Robots {
         }
     }
 
-    /// Whether a robot's numbers can be used: finite, and no faster than anything real.
+    /// Whether a robot's numbers can be used after the last [`Robots::advance`]: finite, and no faster than anything
+    /// real.
     pub fn is_sound(&self, robot: usize) -> bool {
         let (block, lane) = self.place(robot);
-        let state = &self.blocks[block].state;
-        state[..row::LINEAR]
-            .iter()
-            .all(|row| row.0[lane].is_finite())
-            && state[row::LINEAR..row::JOINT]
-                .iter()
-                .all(|row| row.0[lane].abs() < SPEED_LIMIT)
-            && state[row::JOINT..row::IMPULSE]
-                .iter()
-                .all(|row| row.0[lane].is_finite())
+        let tally = &self.tallies[block];
+        tally.odd.0[lane] == 0.0 && tally.fastest.0[lane] < SPEED_LIMIT
     }
 
     /// Everything that the future depends on.

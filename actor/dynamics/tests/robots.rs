@@ -159,6 +159,28 @@ fn wild_targets_and_hard_pushes_break_nothing() {
 }
 
 #[test]
+fn numbers_that_cannot_be_used_are_told_from_those_of_the_neighbours() {
+    let mut robots = Robots::new(solver(), 20);
+    let broken = |change: fn(&mut RobotState)| {
+        let mut state = RobotState::standing();
+        change(&mut state);
+        state
+    };
+    robots.set_state(
+        3,
+        &broken(|state| state.joint_velocities[2] = f32::INFINITY),
+    );
+    robots.set_state(9, &broken(|state| state.position.x = f32::NAN));
+    robots.set_state(17, &broken(|state| state.linear_velocity.z = 2_000.0));
+    for robot in 0..20 {
+        robots.set_targets(robot, &DEFAULT_POSE);
+    }
+    robots.advance(1);
+    let unsound: Vec<_> = (0..20).filter(|&robot| !robots.is_sound(robot)).collect();
+    assert_eq!(unsound, [3, 9, 17]);
+}
+
+#[test]
 fn a_saved_fleet_goes_on_bit_by_bit() {
     let mut robots = wild(Arch::new(), 5);
     let saved = robots.save();
