@@ -108,10 +108,10 @@ impl<L: Lane> Group<L> {
     #[inline(always)]
     fn soundness(&self) -> (L, L) {
         let zero = self.sums.work.lit(0.0);
-        // Infinity less itself is NaN as well. Several sums, for each addition waits for the one before.
+        // Nothing of infinity is NaN as well. Several sums, for each addition waits for the one before.
         let mut odd = [zero; 4];
         for (i, &number) in self.state[..row::IMPULSE].iter().enumerate() {
-            odd[i % 4] = odd[i % 4] + (number - number);
+            odd[i % 4] = number.mul_add(zero, odd[i % 4]);
         }
         let mut fastest = zero;
         for &speed in &self.state[row::LINEAR..row::JOINT] {
