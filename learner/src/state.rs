@@ -127,14 +127,21 @@ impl State {
         Ok(state)
     }
 
-    /// Takes another run's policy over, and nothing else.
+    /// Takes another run's policy over, and nothing else; of a shipped one the actor, for that is all there is.
     fn begin_with(&mut self, checkpoint: &Checkpoint) -> Result<()> {
-        let part = checkpoint
-            .part(LEARNING)
-            .with_context(|| format!("run.from: the checkpoint has no `{LEARNING}`"))?;
-        self.learning.load_policy(part).with_context(|| {
-            format!("run.from: reading its `{LEARNING}`; set policy.hidden as it was")
-        })
+        if let Some(part) = checkpoint.part(LEARNING) {
+            return self.learning.load_policy(part).with_context(|| {
+                format!("run.from: reading its `{LEARNING}`; set policy.hidden as it was")
+            });
+        }
+        let part = checkpoint.part(POLICY).with_context(|| {
+            format!("run.from: the checkpoint has neither `{LEARNING}` nor `{POLICY}`")
+        })?;
+        let numbers = part.as_chunks().0.iter().copied();
+        let flat: Vec<f32> = numbers.map(f32::from_le_bytes).collect();
+        self.learning
+            .load_snapshot(&flat)
+            .with_context(|| format!("run.from: reading its `{POLICY}`"))
     }
 
     fn take_up(&mut self, checkpoint: &Checkpoint) -> Result<()> {

@@ -56,7 +56,10 @@ fn a_policy_to_begin_with_has_to_be_there() {
     assert_says(&refused(&["--from", "nobody"]), &["nobody"]);
     let shipped = crate::harness::repository().join("deploy/policies/walk");
     let shipped = shipped.to_str().expect("text");
-    assert_says(&refused(&["--from", shipped]), &["walk", "critic", "run"]);
+    assert_says(
+        &refused(&["--from", shipped]),
+        &["walk", "policy.hidden=[256, 128, 64]"],
+    );
 }
 
 #[test]

@@ -54,6 +54,29 @@ fn a_run_begins_with_the_policy_of_another_and_nothing_else() {
 }
 
 #[test]
+fn a_shipped_policy_waits_for_its_critic() {
+    let runs = Runs::new();
+    let shipped = crate::harness::repository().join("deploy/policies/walk");
+    let from = shipped.to_str().expect("text");
+    let hidden = [
+        "--set",
+        "policy.hidden=[256,128,64]",
+        "--set",
+        "policy.critic_hidden=[256,128,64]",
+    ];
+    let rest = ["--actors", "1", "--iterations", "1", "--from", from];
+    let mut group = runs.train("from", &[&rest[..], &hidden].concat());
+    assert!(group.end().success(), "{}", group.stderr.text());
+    let config = std::fs::read_to_string(runs.run("from").join("config.toml")).expect("kept");
+    assert!(config.contains("critic_first = 1000000.0"), "{config}");
+    // Statistics take the batch in, and σ is the run's own; the actor behind them is what was shipped.
+    let learnt = bytes(&runs.run("from").join("checkpoints/00000001/policy.bin"));
+    let given = bytes(&shipped.join("policy.bin"));
+    let actor = 4 * (2 * 82 + 23);
+    assert!(learnt[actor..] == given[actor..], "the actor has changed");
+}
+
+#[test]
 fn another_seed_is_another_run() {
     let runs = Runs::new();
     for (name, seed) in [("one", "seed=7"), ("two", "seed=8")] {

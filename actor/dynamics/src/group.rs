@@ -101,9 +101,7 @@ impl<L: Lane> Group<L> {
         spill(&self.sums.torques, &mut tally.torques, lane);
         spill(&self.sums.speeds, &mut tally.speeds, lane);
     }
-}
 
-impl<L: Lane> Group<L> {
     /// What [`Tally::odd`] and [`Tally::fastest`] hold.
     #[inline(always)]
     fn soundness(&self) -> (L, L) {

@@ -6,7 +6,7 @@
 /// eˣ − 1 = 2ⁿ·(eʳ − 1) + (2ⁿ − 1), and eʳ − 1 is r times the polynomial of degree five nearest to (eʳ − 1)/r there with
 /// 1 at zero (minimax, relative error 1.3·10⁻⁸). Near zero n = 0 and the second part vanishes, so nothing cancels there.
 #[inline(always)]
-pub fn elu(x: f32) -> f32 {
+fn elu(x: f32) -> f32 {
     /// Adding it rounds a small number to an integer, which is then found in the lowest bits of the sum.
     const ROUNDING: f32 = 12_582_912.0; // 1.5·2²³
     /// Below it eˣ is less than half a unit in the last place of 1, and 2ⁿ is still a normal number.

@@ -8,10 +8,10 @@
 //! its place in the batch or the width of the machine's vectors (see `kernel`): a row's result has the same bits alone
 //! and among 256 others.
 //!
-//! **Why no matrix library.** The weights change once per rollout and are used hundreds of times in between, so they are
-//! packed once. A general product packs and allocates in every call, and picks its kernel by the size of the batch, which
-//! changes last bits. The kernel here costs with bias, normalisation and ELU no more than a tenth more than the `gemm` crate's
-//! bare product for 16 rows and more, and a third less for one row.
+//! **Why no matrix library.** The weights change once per rollout and are used hundreds of times in between, so they
+//! are packed once. A general product packs and allocates in every call, and picks its kernel by the size of the batch,
+//! which changes last bits. The kernel here costs with bias, normalisation and ELU no more than a tenth more than the
+//! `gemm` crate's bare product for 16 rows and more, and a third less for one row.
 //!
 //! Nothing of ours is imported.
 #![forbid(unsafe_code)]
@@ -24,7 +24,6 @@ mod layer;
 mod policy;
 mod shape;
 
-pub use elu::elu;
 pub use error::PolicyError;
 pub use gaussian::Gaussian;
 pub use policy::{CLIP, Policy};

@@ -7,7 +7,7 @@
 use crate::actuator;
 use crate::kind::Pools;
 use crate::physics::Bodies;
-use crate::randomization::{RandomizationConfig, SensorNoise};
+use crate::randomization::Table;
 use crate::stance::Footing;
 use crate::start::{self, Starts};
 use crate::stray::Astray;
@@ -20,12 +20,9 @@ use serde::{Deserialize, Serialize};
 /// What all environments of a fleet have in common.
 pub(crate) struct Setting {
     pub(crate) task: TaskConfig,
-    pub(crate) randomization: RandomizationConfig,
+    pub(crate) table: Table,
     /// The table of robots that it leaves alone: every row off.
-    pub(crate) plain: RandomizationConfig,
-    /// Sensor noise of both tables.
-    pub(crate) noise: SensorNoise,
-    pub(crate) no_noise: SensorNoise,
+    pub(crate) plain: Table,
     pub(crate) starts: Starts,
     /// The starts by kind of command.
     pub(crate) pools: Pools,
@@ -35,20 +32,11 @@ pub(crate) struct Setting {
 
 impl Setting {
     /// Table I as it counts for a robot.
-    pub(crate) fn table(&self, robot: usize) -> &RandomizationConfig {
-        if self.randomization.spares(robot) {
+    pub(crate) fn table(&self, robot: usize) -> &Table {
+        if self.table.rows.spares(robot) {
             &self.plain
         } else {
-            &self.randomization
-        }
-    }
-
-    /// Sensor noise as it counts for a robot.
-    pub(crate) fn noise(&self, robot: usize) -> &SensorNoise {
-        if self.randomization.spares(robot) {
-            &self.no_noise
-        } else {
-            &self.noise
+            &self.table
         }
     }
 }
@@ -112,7 +100,7 @@ impl Environment {
 
     /// Begins a new episode.
     fn reset(&mut self, setting: &Setting, bodies: &mut Bodies, index: usize) {
-        let table = setting.table(index);
+        let table = &setting.table(index).rows;
         let variation = table.draw_variation(&mut self.random);
         let kinds = setting.task.command.kinds.as_ref();
         let kind = kinds.map(|kinds| kinds.of_robot(index, setting.robots));
@@ -148,7 +136,7 @@ impl Environment {
             return false;
         }
         if count_down(&mut self.push_in) {
-            let table = setting.table(index);
+            let table = &setting.table(index).rows;
             let push = table.draw_push(&mut self.random);
             bodies.push(index, push);
             if let Some(rule) = &setting.task.stray {
@@ -216,9 +204,9 @@ impl Environment {
     }
 
     /// Writes what the policy sees now, with sensor noise where it is on (82 numbers).
-    pub(crate) fn observe(&mut self, noise: &SensorNoise, out: &mut [f32; OBSERVATION]) {
+    pub(crate) fn observe(&mut self, table: &Table, out: &mut [f32; OBSERVATION]) {
         observation::policy_observation(&self.state, &self.command, &self.previous_action, out);
-        noise.blur(out, &mut self.random);
+        table.noise.blur(out, &mut self.random);
     }
 
     /// Steps done in this episode.

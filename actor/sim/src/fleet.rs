@@ -14,7 +14,7 @@ use crate::env::{Environment, Setting};
 use crate::error::SimError;
 use crate::kind::Pools;
 use crate::physics::{Bodies, Exertion};
-use crate::randomization::{RandomizationConfig, SensorNoise};
+use crate::randomization::{RandomizationConfig, Table};
 use crate::start::Starts;
 use crate::task::{End, TaskConfig};
 use g1::{ACTION, FEATURES, OBSERVATION, RobotState, observation};
@@ -95,10 +95,8 @@ impl Fleet {
         )?;
         let setting = Setting {
             task: task.clone(),
-            randomization: randomization.clone(),
-            plain: RandomizationConfig::none(),
-            noise: SensorNoise::of(randomization),
-            no_noise: SensorNoise::of(&RandomizationConfig::none()),
+            table: Table::of(randomization.clone()),
+            plain: Table::of(RandomizationConfig::none()),
             pools: Pools::of(&starts),
             starts,
             robots: environments,
@@ -165,8 +163,7 @@ impl Fleet {
     /// Goes on with other ranges of Table I: noise and pushes from the next step, robots and floors from
     /// their next episode.
     pub fn set_randomization(&mut self, randomization: RandomizationConfig) {
-        self.setting.noise = SensorNoise::of(&randomization);
-        self.setting.randomization = randomization;
+        self.setting.table = Table::of(randomization);
     }
 
     /// Holds a command for the rest of an environment's episode. Its observation shows it at once.
@@ -262,13 +259,13 @@ impl Fleet {
             if outcome.end == End::Timeout {
                 // Seen before the reset: the value of a timed-out episode is that of its own end.
                 environment.observe(
-                    self.setting.noise(i),
+                    self.setting.table(i),
                     &mut out.timeout_observations.as_chunks_mut().0[i],
                 );
             }
             environment.proceed(&self.setting, &mut self.bodies, i, outcome.end);
             environment.observe(
-                self.setting.noise(i),
+                self.setting.table(i),
                 &mut self.observations.as_chunks_mut().0[i],
             );
             let features = &mut self.features[i * FEATURES..][..FEATURES];
@@ -293,7 +290,7 @@ impl Fleet {
     fn look(&mut self, i: usize) {
         let environment = &mut self.environments[i];
         environment.observe(
-            self.setting.noise(i),
+            self.setting.table(i),
             &mut self.observations.as_chunks_mut().0[i],
         );
         observation::features(

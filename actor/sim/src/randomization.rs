@@ -6,11 +6,10 @@
 
 mod noise;
 
-pub(crate) use noise::SensorNoise;
-
 use crate::config::{self, Invalid, range};
 use crate::model::Variation;
 use nalgebra::Vector3;
+use noise::SensorNoise;
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
@@ -239,6 +238,23 @@ impl RandomizationConfig {
     pub fn draw_push_interval(&self, rng: &mut impl Rng) -> Option<u32> {
         self.impulse
             .then(|| config::steps(self.impulse_seconds, rng))
+    }
+}
+
+/// Table I with what is laid out once for every step.
+pub(crate) struct Table {
+    pub(crate) rows: RandomizationConfig,
+    /// Of the five rows that blur what the policy observes.
+    pub(crate) noise: SensorNoise,
+}
+
+impl Table {
+    /// As the rows say.
+    pub(crate) fn of(rows: RandomizationConfig) -> Self {
+        Self {
+            noise: SensorNoise::of(&rows),
+            rows,
+        }
     }
 }
 

@@ -43,7 +43,8 @@ pub(crate) struct Train {
     /// Set one value of the configuration, as in ppo.epochs=4 or seed=7; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Begin with the policy of another run, or of a checkpoint's folder: its networks, their optimizer, statistics of observations
+    /// Begin with the policy of another run, or of a checkpoint's folder: its networks, their optimizer, statistics of
+    /// observations. A shipped policy has no critic; a new one learns alone for a million samples (ppo.critic_first)
     #[arg(long, value_name = "RUN|FOLDER", conflicts_with = "resume")]
     from: Option<String>,
     /// Go on from the last checkpoint of --run, or of the newest run; without one, from its start
@@ -93,10 +94,9 @@ impl Train {
         self.apply(&mut config)?;
         if let Some(from) = &self.from {
             let kept = Kept::open(&self.place, from)?;
-            if kept.part("learning.bin").is_err() {
-                return Err(usage(format!(
-                    "--from {from}: a shipped policy has no critic to begin with; name a run or one of its checkpoints"
-                )));
+            let origin = format!("--from {from}");
+            if kept.part("learning.bin").is_err() && config.given("ppo.critic_first").is_none() {
+                config.put("ppo.critic_first", 1e6, &origin);
             }
             let own: PolicyConfig = config.section("policy")?;
             let theirs = &kept.learning.policy;
@@ -109,7 +109,7 @@ impl Train {
             let path =
                 std::path::absolute(&kept.path).context("finding the policy to begin with")?;
             let path = path.to_str().context("the path of --from is not text")?;
-            config.put("run.from", path, &format!("--from {from}"));
+            config.put("run.from", path, &origin);
         }
         resolve::anchor_files(&mut config, preset.file.as_deref())?;
         let resolved = checked(&mut config)?;

@@ -3,7 +3,7 @@
 use crate::learning::Core;
 use crate::replay::Replay;
 use crate::{Learning, LearningError};
-use networks::{AdamState, NormalizerState};
+use networks::{AdamState, NormalizerState, snapshot};
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -11,6 +11,9 @@ use std::ops::Range;
 
 /// Changes when the content does.
 const FORMAT: u32 = 2;
+
+/// Rows that the statistics of a policy without a learner count as.
+const ROWS_OF_A_SNAPSHOT: f64 = 1e8;
 
 #[derive(Serialize, Deserialize)]
 struct Saved<'a> {
@@ -155,6 +158,31 @@ impl Learning {
         core.take_policy(saved.policy, saved.policy_adam, saved.rate)?;
         core.observations.restore(saved.observations)?;
         self.core = core;
+        Ok(())
+    }
+
+    /// Begins with a policy as actors get it ([`networks::snapshot`]). Critic and optimizer are new; see
+    /// [`crate::PpoConfig::critic_first`].
+    ///
+    /// It does not say how many rows its statistics are of. They count as so many that they hardly move any more:
+    /// when they do, a trained policy sees other numbers than it learnt from.
+    ///
+    /// # Errors
+    /// If the policy is one of other sizes, or a number is not finite. The learner is then as it was before.
+    pub fn load_snapshot(&mut self, flat: &[f32]) -> Result<(), LearningError> {
+        let ppo = &mut self.core.ppo;
+        let parts = snapshot::import(ppo.actor_shape(), flat)?;
+        let count = ROWS_OF_A_SNAPSHOT;
+        self.core.observations.restore(NormalizerState {
+            count,
+            mean: parts.mean.iter().map(|mean| f64::from(*mean)).collect(),
+            squares: parts
+                .inverse
+                .iter()
+                .map(|inverse| count / f64::from(*inverse).powi(2))
+                .collect(),
+        })?;
+        ppo.set_actor(parts.actor);
         Ok(())
     }
 

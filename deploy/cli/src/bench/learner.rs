@@ -120,6 +120,7 @@ impl LearnerBench {
             mirrored: &observations,
             mirrored_share: config.ppo.mirrored_share,
             kl_target: config.ppo.kl_target,
+            critic_alone: false,
             actions: &actions,
             means: &means,
             log_probs: &log_probs,

@@ -52,6 +52,9 @@ pub struct PpoConfig {
     /// That share sinks to nothing between these numbers of samples. Default: it never does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mirrored_fade: Option<[f64; 2]>,
+    /// Samples at first of which the critic alone learns: for a policy that comes without critic and optimizer, and would
+    /// be led astray by a new one. Default 0; `ampco train --from` a shipped policy makes it a million.
+    pub critic_first: f64,
     /// Weight of the symmetry loss: how far the actor, shown the mirror image of a row, is off the mirror image of what
     /// it did there (see [`crate::surrogate::symmetry_loss`]). Unlike mirrored rows it takes no ratio to a density that
     /// no policy had, so it works when exploration is narrow. Default 0: off.
@@ -123,6 +126,7 @@ impl Default for PpoConfig {
             advantage_normalization: AdvantageNormalization::Batch,
             mirrored_share: 0.5,
             mirrored_fade: None,
+            critic_first: 0.0,
             symmetry_weight: 0.0,
             symmetry_share: 0.25,
             threads: 2,
@@ -142,6 +146,11 @@ impl PpoConfig {
             ((to - samples as f64) / (to - from)).clamp(0.0, 1.0)
         });
         self.mirrored_share * rest as f32
+    }
+
+    /// Whether the critic alone learns after `samples`.
+    pub fn critic_alone_at(&self, samples: u64) -> bool {
+        (samples as f64) < self.critic_first
     }
 
     /// Mean KL divergence that the rate is steered to after `samples`.
@@ -206,6 +215,12 @@ impl PpoConfig {
                 "mirrored_fade",
                 format!("{:?}", self.mirrored_fade.unwrap_or_default()),
                 "use two rising numbers of samples, such as [1e6, 2e6]",
+            )
+            .that(
+                self.critic_first >= 0.0 && self.critic_first.is_finite(),
+                "critic_first",
+                self.critic_first,
+                "use a number of samples, or 0",
             )
             .not_negative("symmetry_weight", self.symmetry_weight)
             .share("symmetry_share", self.symmetry_share)

@@ -171,6 +171,7 @@ impl Learning {
             mirrored: &scratch.mirrored_scaled,
             mirrored_share: self.config.ppo.mirrored_share_at(self.core.samples),
             kl_target: self.config.ppo.kl_target_at(self.core.samples),
+            critic_alone: self.config.ppo.critic_alone_at(self.core.samples),
             actions: &batch.actions,
             means: &batch.means,
             log_probs: &batch.log_probs,
@@ -245,7 +246,11 @@ impl Learning {
             self.scratch.past.write(batch, row, &cut, &mut window);
             self.replay.insert(&window);
         }
+        let waited = self.config.ppo.critic_alone_at(core.samples);
         core.iteration += 1;
         core.samples += rows as u64;
+        if waited && !self.config.ppo.critic_alone_at(core.samples) {
+            core.ppo.begin_gently();
+        }
     }
 }

@@ -124,6 +124,50 @@ fn a_policy_is_taken_over_alone() {
 }
 
 #[test]
+fn a_snapshot_begins_with_its_actor_and_its_statistics() {
+    let mut walker = learning();
+    run(&mut walker, 0, 3);
+    let snapshot = walker.policy_flat().to_vec();
+    let mut other = Learning::new(config(), simple(), 999).expect("usable");
+    let before = other.save();
+    assert!(other.load_snapshot(&snapshot[1..]).is_err());
+    assert_eq!(other.save(), before);
+    other.load_snapshot(&snapshot).expect("the same sizes");
+    for (found, expected) in other.policy_flat().iter().zip(&snapshot) {
+        assert!(
+            (found - expected).abs() <= 1e-6 * expected.abs(),
+            "{found} {expected}"
+        );
+    }
+    let critic = |learning: &Learning| learning.core.ppo.critic().to_vec();
+    assert_ne!(critic(&other), critic(&walker));
+    assert_eq!((other.iteration(), other.samples()), (0, 0));
+}
+
+#[test]
+fn the_critic_learns_first_and_the_actor_begins_gently() {
+    let mut config = config();
+    // An iteration is 60 rows: the actor waits in the first two.
+    config.ppo.critic_first = 61.0;
+    let rate = config.ppo.learning_rate;
+    let mut learning = Learning::new(config, simple(), 1).expect("usable");
+    let weights = |learning: &Learning| {
+        let ppo = &learning.core.ppo;
+        (ppo.actor().to_vec(), ppo.critic().to_vec())
+    };
+    let first = weights(&learning);
+    run(&mut learning, 0, 1);
+    assert_eq!(learning.core.ppo.rate(), rate);
+    run(&mut learning, 1, 2);
+    let second = weights(&learning);
+    assert_eq!(second.0, first.0);
+    assert_ne!(second.1, first.1);
+    assert_eq!(learning.core.ppo.rate(), rate / 10.0);
+    run(&mut learning, 2, 3);
+    assert_ne!(weights(&learning).0, first.0);
+}
+
+#[test]
 fn a_state_of_other_sizes_is_refused_by_name() {
     let saved = learning().save();
     let mut other = config();

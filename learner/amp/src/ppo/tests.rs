@@ -88,6 +88,7 @@ impl Bandit {
             mirrored: &self.observations,
             mirrored_share: 0.0,
             kl_target: config().ppo.kl_target,
+            critic_alone: false,
             actions: &self.actions,
             means: &self.means,
             log_probs: &self.log_probs,
