@@ -24,6 +24,8 @@ const SHELL: &str = "shell.json";
 const LEARNING: &str = "learning.bin";
 /// The flat policy alone, little-endian f32, for whoever wants no more.
 const POLICY: &str = "policy.bin";
+/// Of a shipped policy; a run has its critic in [`LEARNING`].
+const CRITIC: &str = "critic.bin";
 
 /// The learner between two iterations.
 pub(crate) struct State {
@@ -127,21 +129,21 @@ impl State {
         Ok(state)
     }
 
-    /// Takes another run's policy over, and nothing else; of a shipped one the actor, for that is all there is.
+    /// Takes another run's policy over, and nothing else; of a shipped one what it has: the actor, and the critic unless
+    /// it was shipped by an older program.
     fn begin_with(&mut self, checkpoint: &Checkpoint) -> Result<()> {
         if let Some(part) = checkpoint.part(LEARNING) {
             return self.learning.load_policy(part).with_context(|| {
                 format!("run.from: reading its `{LEARNING}`; set policy.hidden as it was")
             });
         }
-        let part = checkpoint.part(POLICY).with_context(|| {
+        let policy = checkpoint.part(POLICY).with_context(|| {
             format!("run.from: the checkpoint has neither `{LEARNING}` nor `{POLICY}`")
         })?;
-        let numbers = part.as_chunks().0.iter().copied();
-        let flat: Vec<f32> = numbers.map(f32::from_le_bytes).collect();
+        let critic = checkpoint.part(CRITIC).map(numbers);
         self.learning
-            .load_snapshot(&flat)
-            .with_context(|| format!("run.from: reading its `{POLICY}`"))
+            .load_snapshot(&numbers(policy), critic.as_deref())
+            .with_context(|| format!("run.from: reading its `{POLICY}` and `{CRITIC}`"))
     }
 
     fn take_up(&mut self, checkpoint: &Checkpoint) -> Result<()> {
@@ -271,6 +273,12 @@ impl StoredReport {
             ..RewardReport::default()
         }
     }
+}
+
+/// The numbers of a part that holds nothing else.
+fn numbers(part: &[u8]) -> Vec<f32> {
+    let numbers = part.as_chunks().0.iter().copied();
+    numbers.map(f32::from_le_bytes).collect()
 }
 
 /// Seconds since the first call: the pure crates own no clock.

@@ -6,6 +6,7 @@
 #![allow(missing_docs)]
 
 mod bad_input;
+mod begin;
 mod disk;
 mod elastic;
 mod faults;

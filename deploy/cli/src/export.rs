@@ -32,8 +32,8 @@ pub(crate) struct Export {
     /// Folder to write to; made if it is not there
     #[arg(long, value_name = "DIR", required_unless_present = "mjcf")]
     out: Option<PathBuf>,
-    /// Write instead a folder that `evaluate`, `play` and `export` take like a run, half a megabyte: the
-    /// policy, the discriminator that judges its style, and its configuration
+    /// Write instead a folder that `evaluate`, `play`, `export` and `train --from` take like a run, about a
+    /// megabyte: policy, critic, the discriminator that judges its style, and the configuration
     #[arg(long, requires = "run")]
     ship: bool,
     /// Write the robot alone, to DIR/g1.xml or to standard output

@@ -44,7 +44,8 @@ pub(crate) struct Train {
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Begin with the policy of another run, or of a checkpoint's folder: its networks, their optimizer, statistics of
-    /// observations. A shipped policy has no critic; a new one learns alone for a million samples (ppo.critic_first)
+    /// observations. Of a shipped policy its networks; one without critic.bin gets a new critic, which learns alone for a
+    /// million samples (ppo.critic_first)
     #[arg(long, value_name = "RUN|FOLDER", conflicts_with = "resume")]
     from: Option<String>,
     /// Go on from the last checkpoint of --run, or of the newest run; without one, from its start
@@ -95,7 +96,10 @@ impl Train {
         if let Some(from) = &self.from {
             let kept = Kept::open(&self.place, from)?;
             let origin = format!("--from {from}");
-            if kept.part("learning.bin").is_err() && config.given("ppo.critic_first").is_none() {
+            let without_critic = ["learning.bin", "critic.bin"]
+                .iter()
+                .all(|part| kept.part(part).is_err());
+            if without_critic && config.given("ppo.critic_first").is_none() {
                 config.put("ppo.critic_first", 1e6, &origin);
             }
             let own: PolicyConfig = config.section("policy")?;

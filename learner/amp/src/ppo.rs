@@ -5,6 +5,7 @@
 
 mod part;
 
+use crate::LearningError;
 use crate::config::{
     AdvantageNormalization, ExplorationKind, LearningConfig, PpoConfig, RateSchedule,
 };
@@ -15,8 +16,8 @@ use crate::robot::{JointGroup, Mirror};
 use crate::{ACTION, OBSERVATION, exploration, surrogate};
 use burn::tensor::Tensor;
 use networks::{
-    Activation, Adam, AdamConfig, Shape, clip_norm, orthogonal, shards, tensor, tracked_device,
-    values,
+    Activation, Adam, AdamConfig, NetworkError, Shape, clip_norm, orthogonal, shards, tensor,
+    tracked_device, values,
 };
 use part::Minibatch;
 use rand::Rng;
@@ -133,16 +134,40 @@ impl Ppo {
         &self.weights[..self.actor.len()]
     }
 
-    /// Begins with an actor of these sizes.
-    pub(crate) fn set_actor(&mut self, actor: &[f32]) {
-        let own = self.actor.len();
-        self.weights[..own].copy_from_slice(actor);
+    /// Begins with a trained actor, and its critic if that is known.
+    ///
+    /// # Errors
+    /// If one is of another size, or a weight of the critic is not finite.
+    pub(crate) fn begin_with(
+        &mut self,
+        actor: &[f32],
+        critic: Option<&[f32]>,
+    ) -> Result<(), LearningError> {
+        NetworkError::check_length("weights of the actor", self.actor.len(), actor.len())?;
+        self.weights[..actor.len()].copy_from_slice(actor);
+        let Some(critic) = critic else {
+            return Ok(());
+        };
+        NetworkError::check_length("weights of the critic", self.critic.len(), critic.len())?;
+        if let Some(index) = networks::first_not_finite(critic) {
+            return Err(NetworkError::NotFinite {
+                what: "weights of the critic".to_owned(),
+                index,
+                value: critic[index],
+            }
+            .into());
+        }
+        self.weights[actor.len()..][..critic.len()].copy_from_slice(critic);
+        self.begin_gently();
+        Ok(())
     }
 
-    /// Lowers the rate before the actor's first step: whatever the gradient, Adam's first steps are as long as the rate.
-    /// With the whole of 3·10⁻⁴ a trained policy went 1.8 nats in one iteration.
+    /// Before the actor's first step: the lowest rate, and an optimizer that remembers nothing. Adam's memory of squares is
+    /// longer than that of gradients, so with the steps that the critic took alone counted in, the actor's first ones
+    /// would be several times the rate. A trained policy went 1.8 to 180 nats in one iteration.
     pub(crate) fn begin_gently(&mut self) {
-        self.rate = (self.rate / 10.0).max(self.config.min_learning_rate);
+        self.rate = self.config.min_learning_rate;
+        self.adam = Adam::new(self.weights.len(), AdamConfig::default(), vec![]);
     }
 
     /// The critic's weights.

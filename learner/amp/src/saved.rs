@@ -12,8 +12,9 @@ use std::ops::Range;
 /// Changes when the content does.
 const FORMAT: u32 = 2;
 
-/// Rows that the statistics of a policy without a learner count as.
-const ROWS_OF_A_SNAPSHOT: f64 = 1e8;
+/// Rows that the statistics of a snapshot count as, for it does not say: so many that they hardly move any more. A trained
+/// policy unlearns when it sees them move (counted as 10⁸, one lost 2 % of its task reward in 8 million samples).
+const ROWS_OF_A_SNAPSHOT: f64 = 1e12;
 
 #[derive(Serialize, Deserialize)]
 struct Saved<'a> {
@@ -161,29 +162,35 @@ impl Learning {
         Ok(())
     }
 
-    /// Begins with a policy as actors get it ([`networks::snapshot`]). Critic and optimizer are new; see
-    /// [`crate::PpoConfig::critic_first`].
-    ///
-    /// It does not say how many rows its statistics are of. They count as so many that they hardly move any more:
-    /// when they do, a trained policy sees other numbers than it learnt from.
+    /// Begins with a policy as actors get it ([`networks::snapshot`]) and its critic's weights, if they are known; without,
+    /// the critic is new, see [`crate::PpoConfig::critic_first`]. So is the optimizer.
     ///
     /// # Errors
-    /// If the policy is one of other sizes, or a number is not finite. The learner is then as it was before.
-    pub fn load_snapshot(&mut self, flat: &[f32]) -> Result<(), LearningError> {
-        let ppo = &mut self.core.ppo;
-        let parts = snapshot::import(ppo.actor_shape(), flat)?;
-        let count = ROWS_OF_A_SNAPSHOT;
-        self.core.observations.restore(NormalizerState {
-            count,
+    /// If actor or critic are of other sizes, or a number is not finite. The learner is then as it was before.
+    pub fn load_snapshot(
+        &mut self,
+        flat: &[f32],
+        critic: Option<&[f32]>,
+    ) -> Result<(), LearningError> {
+        let mut core = self.core.clone();
+        let parts = snapshot::import(core.ppo.actor_shape(), flat)?;
+        core.observations.restore(NormalizerState {
+            count: ROWS_OF_A_SNAPSHOT,
             mean: parts.mean.iter().map(|mean| f64::from(*mean)).collect(),
             squares: parts
                 .inverse
                 .iter()
-                .map(|inverse| count / f64::from(*inverse).powi(2))
+                .map(|inverse| ROWS_OF_A_SNAPSHOT / f64::from(*inverse).powi(2))
                 .collect(),
         })?;
-        ppo.set_actor(parts.actor);
+        core.ppo.begin_with(parts.actor, critic)?;
+        self.core = core;
         Ok(())
+    }
+
+    /// The critic's weights, for [`Learning::load_snapshot`].
+    pub fn critic(&self) -> &[f32] {
+        self.core.ppo.critic()
     }
 
     /// The discriminator alone, a hundredth of [`Learning::save`]: enough to judge style, not to go on training.

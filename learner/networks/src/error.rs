@@ -27,7 +27,7 @@ pub enum NetworkError {
 
 impl NetworkError {
     /// Passes if a vector has the expected length.
-    pub(crate) fn check_length(what: &str, expected: usize, found: usize) -> Result<(), Self> {
+    pub fn check_length(what: &str, expected: usize, found: usize) -> Result<(), Self> {
         if expected == found {
             return Ok(());
         }

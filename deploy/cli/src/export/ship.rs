@@ -5,12 +5,15 @@
 
 use std::path::{Path, PathBuf};
 
+use amp::Learning;
 use anyhow::{Context, Result};
 use run::Checkpoints;
 
 use crate::evaluate::judge::Judge;
 use crate::evaluate::subject::Kept;
 use crate::failure::usage;
+
+const CRITIC: &str = "critic.bin";
 
 /// Writes the folder whole or not at all; gives its files and their sizes.
 pub(super) fn write(kept: &Kept, folder: &Path) -> Result<Vec<(PathBuf, usize)>> {
@@ -25,10 +28,12 @@ pub(super) fn write(kept: &Kept, folder: &Path) -> Result<Vec<(PathBuf, usize)>>
     let draft = PathBuf::from(draft);
     std::fs::create_dir_all(&draft).with_context(|| format!("making {}", draft.display()))?;
     let (judge, judge_bytes) = Judge::of(kept)?.part();
-    let parts = [
+    let critic = critic(kept)?;
+    let mut parts = vec![
         ("policy.bin", kept.part("policy.bin")?),
         (judge, &judge_bytes[..]),
     ];
+    parts.extend(critic.as_deref().map(|bytes| (CRITIC, bytes)));
     let written = Checkpoints::new(draft.clone())
         .write(kept.iteration, "shipped", &parts)
         .context("writing the policy")?;
@@ -50,6 +55,24 @@ pub(super) fn write(kept: &Kept, folder: &Path) -> Result<Vec<(PathBuf, usize)>>
     }
     files.sort();
     Ok(files)
+}
+
+/// The critic's weights, little-endian numbers like those of the policy. Runs that begin with this policy need them; what
+/// was shipped without has none.
+fn critic(kept: &Kept) -> Result<Option<Vec<u8>>> {
+    if let Ok(bytes) = kept.part(CRITIC) {
+        return Ok(Some(bytes.to_vec()));
+    }
+    let Ok(bytes) = kept.part("learning.bin") else {
+        return Ok(None);
+    };
+    let mut learning = Learning::new(kept.learning.clone(), learner::robot(), 0)
+        .context("setting up the networks")?;
+    learning
+        .load(bytes)
+        .with_context(|| format!("loading learning.bin of {}", kept.path.display()))?;
+    let numbers = learning.critic().iter().flat_map(|x| x.to_le_bytes());
+    Ok(Some(numbers.collect()))
 }
 
 /// A resolved configuration, one key a line, without `run.from`: a folder that nobody else has.
@@ -93,6 +116,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let again = folder.path().join("policies/walk");
         let files = write(&subject.kept, &again).unwrap();
+        // Shipped before critics were, it has none to pass on.
         assert_eq!(files.len(), 4);
         for name in ["policy.bin", "judge.bin", "config.toml"] {
             let bytes = |folder: &Path| std::fs::read(folder.join(name)).unwrap();

@@ -130,18 +130,27 @@ fn a_snapshot_begins_with_its_actor_and_its_statistics() {
     let snapshot = walker.policy_flat().to_vec();
     let mut other = Learning::new(config(), simple(), 999).expect("usable");
     let before = other.save();
-    assert!(other.load_snapshot(&snapshot[1..]).is_err());
+    let theirs = walker.critic().to_vec();
+    assert!(other.load_snapshot(&snapshot[1..], None).is_err());
+    assert!(other.load_snapshot(&snapshot, Some(&theirs[1..])).is_err());
     assert_eq!(other.save(), before);
-    other.load_snapshot(&snapshot).expect("the same sizes");
+    other
+        .load_snapshot(&snapshot, None)
+        .expect("the same sizes");
     for (found, expected) in other.policy_flat().iter().zip(&snapshot) {
         assert!(
             (found - expected).abs() <= 1e-6 * expected.abs(),
             "{found} {expected}"
         );
     }
-    let critic = |learning: &Learning| learning.core.ppo.critic().to_vec();
-    assert_ne!(critic(&other), critic(&walker));
+    assert_ne!(other.critic(), theirs);
+    other
+        .load_snapshot(&snapshot, Some(&theirs))
+        .expect("the same sizes");
+    assert_eq!(other.critic(), theirs);
     assert_eq!((other.iteration(), other.samples()), (0, 0));
+    let least = config().ppo.min_learning_rate;
+    assert_eq!(other.core.ppo.rate(), least);
 }
 
 #[test]
@@ -149,7 +158,7 @@ fn the_critic_learns_first_and_the_actor_begins_gently() {
     let mut config = config();
     // An iteration is 60 rows: the actor waits in the first two.
     config.ppo.critic_first = 61.0;
-    let rate = config.ppo.learning_rate;
+    let (rate, least) = (config.ppo.learning_rate, config.ppo.min_learning_rate);
     let mut learning = Learning::new(config, simple(), 1).expect("usable");
     let weights = |learning: &Learning| {
         let ppo = &learning.core.ppo;
@@ -162,7 +171,7 @@ fn the_critic_learns_first_and_the_actor_begins_gently() {
     let second = weights(&learning);
     assert_eq!(second.0, first.0);
     assert_ne!(second.1, first.1);
-    assert_eq!(learning.core.ppo.rate(), rate / 10.0);
+    assert_eq!(learning.core.ppo.rate(), least);
     run(&mut learning, 2, 3);
     assert_ne!(weights(&learning).0, first.0);
 }
