@@ -4,6 +4,7 @@
 //! order of threads, clipped as a whole, and taken by one optimizer. Actor, critic and ln σ lie in one flat vector.
 
 mod part;
+mod step;
 
 use crate::LearningError;
 use crate::config::{
@@ -14,11 +15,7 @@ use crate::minibatch::{Order, split};
 use crate::report::moments;
 use crate::robot::{JointGroup, Mirror};
 use crate::{ACTION, OBSERVATION, exploration, surrogate};
-use burn::tensor::Tensor;
-use networks::{
-    Activation, Adam, AdamConfig, NetworkError, Shape, clip_norm, orthogonal, shards, tensor,
-    tracked_device, values,
-};
+use networks::{Activation, Adam, AdamConfig, NetworkError, Shape, orthogonal, values};
 use part::Minibatch;
 use rand::Rng;
 use std::ops::Range;
@@ -261,103 +258,6 @@ impl Ppo {
         Ok(figures)
     }
 
-    /// One step of the optimizer.
-    fn step(&mut self, minibatch: &Minibatch<'_>, sigma: &[f32]) -> Result<StepSums, Fault> {
-        let count = minibatch.indices.len();
-        let threads = self.config.threads.min(count);
-        let mut states = vec![(); threads];
-        let this = &*self;
-        let mut parts = shards::run(&mut states, |i, ()| {
-            this.differentiate(minibatch, shards::part(count, i, threads), sigma)
-        })
-        .into_iter();
-        let mut total = parts.next().unwrap_or_default();
-        for part in parts {
-            total
-                .gradient
-                .iter_mut()
-                .zip(&part.gradient)
-                .for_each(|(a, b)| *a += b);
-            total.surrogate += part.surrogate;
-            total.value_loss += part.value_loss;
-            total.kl += part.kl;
-            total.kl_rows += part.kl_rows;
-            total.clipped += part.clipped;
-            total.asymmetry += part.asymmetry;
-        }
-        let waits = minibatch.rows.critic_alone;
-        if waits {
-            // Of nothing Adam makes nothing, unless it remembers more: a policy without a critic comes without that.
-            let (actor, rest) = total.gradient.split_at_mut(self.actor.len());
-            actor.fill(0.0);
-            rest[self.critic.len()..].fill(0.0);
-        }
-        let norm = self.check(&mut total)?;
-        if self.config.schedule == RateSchedule::PerMinibatch && !waits {
-            let kl = total.kl / total.kl_rows.max(1) as f64;
-            self.follow(kl, minibatch.rows.kl_target);
-        }
-        self.adam
-            .step(&mut self.weights, &total.gradient, self.rate);
-        if let Some(limits) = &self.log_sigma_limits {
-            let start = self.actor.len() + self.critic.len();
-            for log in &mut self.weights[start..] {
-                *log = log.clamp(limits.start, limits.end);
-            }
-        }
-        Ok(StepSums {
-            surrogate: total.surrogate,
-            value_loss: total.value_loss,
-            kl: total.kl,
-            kl_rows: total.kl_rows,
-            clipped: total.clipped,
-            asymmetry: total.asymmetry,
-            norm: f64::from(norm),
-        })
-    }
-
-    /// Clips the gradient to its greatest norm, and refuses what would spoil the weights; the norm before.
-    fn check(&self, total: &mut part::Sums) -> Result<f32, Fault> {
-        for (what, value) in [
-            ("surrogate loss", total.surrogate),
-            ("value loss", total.value_loss),
-        ] {
-            if !value.is_finite() {
-                // A broken weight breaks every loss after it: it is the cause to name.
-                self.check_weights()?;
-                return Err(Fault::new(what, value));
-            }
-        }
-        let norm = clip_norm(&mut total.gradient, self.config.gradient_norm);
-        Fault::unless_finite(&total.gradient, |i| format!("gradient of {}", self.name(i)))?;
-        Ok(norm)
-    }
-
-    fn check_weights(&self) -> Result<(), Fault> {
-        Fault::unless_finite(&self.weights, |i| self.name(i))
-    }
-
-    /// ln σ `[1, 23]`: a differentiable weight if it is learned, else that of the given σ.
-    fn log_sigma_tensor(&self, sigma: &[f32]) -> Tensor<2> {
-        let device = tracked_device();
-        match self.log_sigma_limits {
-            Some(_) => tensor(self.log_sigma().to_vec(), ACTION, &device).require_grad(),
-            None => tensor(sigma.iter().map(|s| s.ln()).collect(), ACTION, &device),
-        }
-    }
-
-    /// Moves the rate one factor toward the KL `target`, if KL is outside the band.
-    fn follow(&mut self, kl: f64, target: f32) {
-        let (target, band) = (f64::from(target), f64::from(self.config.kl_band));
-        if kl > target * band {
-            self.rate /= self.config.rate_factor;
-        } else if kl < target / band {
-            self.rate *= self.config.rate_factor;
-        }
-        let (least, most) = (self.config.min_learning_rate, self.config.max_learning_rate);
-        self.rate = self.rate.clamp(least, most);
-    }
-
     /// Tensors by name, sizes and place in the flat vector.
     pub(crate) fn tensors(&self) -> Vec<(String, Vec<usize>, Range<usize>)> {
         let parts = [
@@ -389,17 +289,6 @@ impl Ppo {
             .find(|(_, _, place)| place.contains(&index));
         found.map_or_else(String::new, |(name, ..)| name)
     }
-}
-
-/// Figures of one step.
-struct StepSums {
-    surrogate: f64,
-    value_loss: f64,
-    kl: f64,
-    kl_rows: usize,
-    clipped: usize,
-    norm: f64,
-    asymmetry: f64,
 }
 
 /// Shift and scale that give numbers mean 0 and deviation 1.

@@ -3,7 +3,7 @@
 use super::*;
 use crate::config::{PolicyConfig, RateSchedule};
 use crate::robot::tests::simple;
-use networks::Mlp;
+use networks::{Mlp, tensor};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;

@@ -1,0 +1,122 @@
+//! One step of the optimizer: gradients of all threads added, checked, clipped and taken.
+
+use super::part::{self, Minibatch};
+use super::{Ppo, RateSchedule};
+use crate::ACTION;
+use crate::error::Fault;
+use burn::tensor::Tensor;
+use networks::{clip_norm, shards, tensor, tracked_device};
+
+/// Figures of one step.
+pub(super) struct StepSums {
+    pub(super) surrogate: f64,
+    pub(super) value_loss: f64,
+    pub(super) kl: f64,
+    pub(super) kl_rows: usize,
+    pub(super) clipped: usize,
+    pub(super) norm: f64,
+    pub(super) asymmetry: f64,
+}
+
+impl Ppo {
+    /// One step of the optimizer.
+    pub(super) fn step(
+        &mut self,
+        minibatch: &Minibatch<'_>,
+        sigma: &[f32],
+    ) -> Result<StepSums, Fault> {
+        let count = minibatch.indices.len();
+        let threads = self.config.threads.min(count);
+        let mut states = vec![(); threads];
+        let this = &*self;
+        let mut parts = shards::run(&mut states, |i, ()| {
+            this.differentiate(minibatch, shards::part(count, i, threads), sigma)
+        })
+        .into_iter();
+        let mut total = parts.next().unwrap_or_default();
+        for part in parts {
+            total
+                .gradient
+                .iter_mut()
+                .zip(&part.gradient)
+                .for_each(|(a, b)| *a += b);
+            total.surrogate += part.surrogate;
+            total.value_loss += part.value_loss;
+            total.kl += part.kl;
+            total.kl_rows += part.kl_rows;
+            total.clipped += part.clipped;
+            total.asymmetry += part.asymmetry;
+        }
+        let waits = minibatch.rows.critic_alone;
+        if waits {
+            // Of nothing Adam makes nothing, unless it remembers more: a policy without a critic comes without that.
+            let (actor, rest) = total.gradient.split_at_mut(self.actor.len());
+            actor.fill(0.0);
+            rest[self.critic.len()..].fill(0.0);
+        }
+        let norm = self.check(&mut total)?;
+        if self.config.schedule == RateSchedule::PerMinibatch && !waits {
+            let kl = total.kl / total.kl_rows.max(1) as f64;
+            self.follow(kl, minibatch.rows.kl_target);
+        }
+        self.adam
+            .step(&mut self.weights, &total.gradient, self.rate);
+        if let Some(limits) = &self.log_sigma_limits {
+            let start = self.actor.len() + self.critic.len();
+            for log in &mut self.weights[start..] {
+                *log = log.clamp(limits.start, limits.end);
+            }
+        }
+        Ok(StepSums {
+            surrogate: total.surrogate,
+            value_loss: total.value_loss,
+            kl: total.kl,
+            kl_rows: total.kl_rows,
+            clipped: total.clipped,
+            asymmetry: total.asymmetry,
+            norm: f64::from(norm),
+        })
+    }
+
+    /// Clips the gradient to its greatest norm, and refuses what would spoil the weights; the norm before.
+    pub(super) fn check(&self, total: &mut part::Sums) -> Result<f32, Fault> {
+        for (what, value) in [
+            ("surrogate loss", total.surrogate),
+            ("value loss", total.value_loss),
+        ] {
+            if !value.is_finite() {
+                // A broken weight breaks every loss after it: it is the cause to name.
+                self.check_weights()?;
+                return Err(Fault::new(what, value));
+            }
+        }
+        let norm = clip_norm(&mut total.gradient, self.config.gradient_norm);
+        Fault::unless_finite(&total.gradient, |i| format!("gradient of {}", self.name(i)))?;
+        Ok(norm)
+    }
+
+    pub(super) fn check_weights(&self) -> Result<(), Fault> {
+        Fault::unless_finite(&self.weights, |i| self.name(i))
+    }
+
+    /// ln σ `[1, 23]`: a differentiable weight if it is learned, else that of the given σ.
+    pub(super) fn log_sigma_tensor(&self, sigma: &[f32]) -> Tensor<2> {
+        let device = tracked_device();
+        match self.log_sigma_limits {
+            Some(_) => tensor(self.log_sigma().to_vec(), ACTION, &device).require_grad(),
+            None => tensor(sigma.iter().map(|s| s.ln()).collect(), ACTION, &device),
+        }
+    }
+
+    /// Moves the rate one factor toward the KL `target`, if KL is outside the band.
+    pub(super) fn follow(&mut self, kl: f64, target: f32) {
+        let (target, band) = (f64::from(target), f64::from(self.config.kl_band));
+        if kl > target * band {
+            self.rate /= self.config.rate_factor;
+        } else if kl < target / band {
+            self.rate *= self.config.rate_factor;
+        }
+        let (least, most) = (self.config.min_learning_rate, self.config.max_learning_rate);
+        self.rate = self.rate.clamp(least, most);
+    }
+}
