@@ -1,9 +1,12 @@
 //! Exploration: a Gaussian of given width around the mean action, and the density of what was drawn.
 
+use pulp::Arch;
 use rand::Rng;
-use rand_distr::{Distribution, StandardNormal};
 
-use crate::OUTPUTS;
+use crate::{OUTPUTS, normal};
+
+/// Squares of a row's deviations with room to add them by halves.
+const SQUARES: usize = OUTPUTS.next_power_of_two();
 
 /// Independent normal distributions, one per action.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,25 +37,59 @@ impl Gaussian {
         &self.sigma
     }
 
-    /// Draws  aᵢ = μᵢ + σᵢ·zᵢ,  zᵢ standard normal, for one row of means.
-    pub fn sample<R: Rng + ?Sized>(&self, mean: &[f32], rng: &mut R, action: &mut [f32]) {
-        for ((action, &mean), &sigma) in action.iter_mut().zip(mean).zip(&self.sigma) {
-            let z: f32 = StandardNormal.sample(rng);
-            *action = sigma.mul_add(z, mean);
-        }
+    /// Draws  aᵢ = μᵢ + σᵢ·zᵢ,  zᵢ standard normal, for rows of means `[n][23]`, with the log-density of each row in
+    /// `log_probs` `[n]`.
+    pub(crate) fn sample<R: Rng + ?Sized>(
+        &self,
+        arch: Arch,
+        means: &[f32],
+        rng: &mut R,
+        actions: &mut [f32],
+        log_probs: &mut [f32],
+    ) {
+        let means = means.as_chunks().0;
+        let actions = actions.as_chunks_mut().0;
+        arch.dispatch(
+            #[inline(always)]
+            || {
+                for ((mean, action), log_prob) in means.iter().zip(actions).zip(log_probs) {
+                    let z = normal::row(rng);
+                    for i in 0..OUTPUTS {
+                        action[i] = mean[i] + self.sigma[i] * z[i];
+                    }
+                    *log_prob = self.of_row(action, mean);
+                }
+            },
+        );
     }
 
     /// Log-density of an action:  ln π(a) = Σᵢ (−½·((aᵢ − μᵢ)/σᵢ)² − ln σᵢ − ½·ln 2π).
     ///
     /// Taken from the rounded action that is stored, not from the draw: who recomputes it later finds the same.
+    ///
+    /// # Panics
+    /// If action or mean are not one row.
     pub fn log_density(&self, action: &[f32], mean: &[f32]) -> f32 {
-        let squares: f32 = action
-            .iter()
-            .zip(mean)
-            .zip(&self.inverse_sigma)
-            .map(|((action, mean), inverse_sigma)| ((action - mean) * inverse_sigma).powi(2))
-            .sum();
-        self.log_density_at_mean - 0.5 * squares
+        let row = |numbers: &[f32]| numbers.try_into().expect("one row");
+        self.of_row(&row(action), &row(mean))
+    }
+
+    #[inline(always)]
+    fn of_row(&self, action: &[f32; OUTPUTS], mean: &[f32; OUTPUTS]) -> f32 {
+        let mut squares = [0.0; SQUARES];
+        for i in 0..OUTPUTS {
+            let deviation = (action[i] - mean[i]) * self.inverse_sigma[i];
+            squares[i] = deviation * deviation;
+        }
+        // By halves, for a sum from first to last cannot be done in vectors.
+        let mut count = SQUARES;
+        while count > 1 {
+            count /= 2;
+            for i in 0..count {
+                squares[i] += squares[i + count];
+            }
+        }
+        self.log_density_at_mean - 0.5 * squares[0]
     }
 }
 
@@ -94,9 +131,11 @@ mod tests {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(1);
         let (mut sums, mut squares) = ([0.0_f64; OUTPUTS], [0.0_f64; OUTPUTS]);
         let draws = 20_000;
+        let mut log_prob = [0.0];
         for _ in 0..draws {
             let mut action = [0.0; OUTPUTS];
-            gaussian.sample(&mean, &mut rng, &mut action);
+            gaussian.sample(Arch::new(), &mean, &mut rng, &mut action, &mut log_prob);
+            assert_eq!(log_prob[0], gaussian.log_density(&action, &mean));
             for i in 0..OUTPUTS {
                 let off = f64::from(action[i] - mean[i]);
                 sums[i] += off;
@@ -108,6 +147,25 @@ mod tests {
             // Standard errors: σ/√n = 0.007 σ of the mean, σ/√(2n) = 0.005 σ of the deviation; five of each.
             assert!((sums[i] / n).abs() < 0.036 * sigma);
             assert!(((squares[i] / n).sqrt() - sigma).abs() < 0.026 * sigma);
+        }
+    }
+
+    #[test]
+    fn every_width_of_vectors_draws_the_same_bits() {
+        let gaussian = Gaussian::new(std::array::from_fn(|i| 0.1 + 0.01 * i as f32));
+        let means: Vec<f32> = (0..7 * OUTPUTS).map(|i| (i as f32).sin()).collect();
+        let draw = |arch: Arch| {
+            let (mut actions, mut log_probs) = (vec![0.0; means.len()], vec![0.0; 7]);
+            let mut rng = rand_pcg::Pcg64::seed_from_u64(2);
+            gaussian.sample(arch, &means, &mut rng, &mut actions, &mut log_probs);
+            actions.extend(log_probs);
+            actions.into_iter().map(f32::to_bits).collect::<Vec<_>>()
+        };
+        let plain = draw(Arch::Scalar);
+        assert_eq!(draw(Arch::new()), plain);
+        #[cfg(target_arch = "x86_64")]
+        if let Some(avx2) = pulp::x86::V3::try_new() {
+            assert_eq!(draw(Arch::V3(avx2)), plain);
         }
     }
 }

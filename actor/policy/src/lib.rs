@@ -21,6 +21,7 @@ mod error;
 mod gaussian;
 mod kernel;
 mod layer;
+mod normal;
 mod policy;
 mod shape;
 

@@ -144,13 +144,8 @@ impl Policy {
         assert_eq!(actions.len(), n * OUTPUTS, "actions of {n} rows");
         assert_eq!(log_probs.len(), n, "log-densities of {n} rows");
         self.means(observations, n, means);
-        let rows = means
-            .chunks_exact(OUTPUTS)
-            .zip(actions.chunks_exact_mut(OUTPUTS));
-        for ((mean, action), log_prob) in rows.zip(log_probs) {
-            self.gaussian.sample(mean, rng, action);
-            *log_prob = self.gaussian.log_density(action, mean);
-        }
+        self.gaussian
+            .sample(self.arch, means, rng, actions, log_probs);
     }
 
     /// Up to `BLOCK` rows.
