@@ -14,7 +14,7 @@ use networks::{
     tracked_device, values,
 };
 use rand::Rng;
-use std::ops::Range;
+use std::ops::{AddAssign, Range};
 
 mod view;
 
@@ -54,6 +54,16 @@ struct Sums {
     policy_score: f64,
     penalty: f64,
     loss: f64,
+}
+
+impl AddAssign for Sums {
+    fn add_assign(&mut self, part: Self) {
+        shards::add(&mut self.gradient, &part.gradient);
+        self.expert_score += part.expert_score;
+        self.policy_score += part.policy_score;
+        self.penalty += part.penalty;
+        self.loss += part.loss;
+    }
 }
 
 impl Discriminator {
@@ -156,24 +166,9 @@ impl Discriminator {
     fn step(&mut self, experts: &[f32], policy: &[f32]) -> Result<Figures, Fault> {
         let count = experts.len() / self.width();
         let threads = self.threads.min(count);
-        let this = &*self;
-        let mut states = vec![(); threads];
-        let mut parts = shards::run(&mut states, |i, ()| {
-            this.differentiate(experts, policy, shards::part(count, i, threads))
-        })
-        .into_iter();
-        let mut total = parts.next().unwrap_or_default();
-        for part in parts {
-            total
-                .gradient
-                .iter_mut()
-                .zip(&part.gradient)
-                .for_each(|(a, b)| *a += b);
-            total.expert_score += part.expert_score;
-            total.policy_score += part.policy_score;
-            total.penalty += part.penalty;
-            total.loss += part.loss;
-        }
+        let total = shards::total(count, threads, |part| {
+            self.differentiate(experts, policy, part)
+        });
         self.check(&total)?;
         self.adam.step(
             &mut self.weights,

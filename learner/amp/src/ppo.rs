@@ -227,11 +227,11 @@ impl Ppo {
                     shift,
                     scale,
                 };
-                let sums = self.step(&minibatch, sigma)?;
+                let (sums, norm) = self.step(&minibatch, sigma)?;
                 figures.surrogate += sums.surrogate;
                 figures.value_loss += sums.value_loss;
                 figures.clip_fraction += sums.clipped as f64 / indices.len() as f64;
-                figures.gradient_norm += sums.norm;
+                figures.gradient_norm += f64::from(norm);
                 figures.asymmetry += sums.asymmetry;
                 kl = (kl.0 + sums.kl, kl.1 + sums.kl_rows);
                 steps += 1;

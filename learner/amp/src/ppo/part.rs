@@ -5,7 +5,7 @@ use crate::inference::CHUNK;
 use crate::minibatch::is_mirrored;
 use crate::{ACTION, OBSERVATION, surrogate};
 use networks::{Mlp, shards, tensor, tracked_device, values};
-use std::ops::Range;
+use std::ops::{AddAssign, Range};
 
 /// Sums over the rows of one minibatch, or of a shard of it.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +17,18 @@ pub(super) struct Sums {
     pub(super) kl_rows: usize,
     pub(super) clipped: usize,
     pub(super) asymmetry: f64,
+}
+
+impl AddAssign for Sums {
+    fn add_assign(&mut self, part: Self) {
+        shards::add(&mut self.gradient, &part.gradient);
+        self.surrogate += part.surrogate;
+        self.value_loss += part.value_loss;
+        self.kl += part.kl;
+        self.kl_rows += part.kl_rows;
+        self.clipped += part.clipped;
+        self.asymmetry += part.asymmetry;
+    }
 }
 
 /// What all shards of a minibatch have in common.

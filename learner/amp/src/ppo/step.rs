@@ -1,52 +1,24 @@
 //! One step of the optimizer: gradients of all threads added, checked, clipped and taken.
 
-use super::part::{self, Minibatch};
+use super::part::{Minibatch, Sums};
 use super::{Ppo, RateSchedule};
 use crate::ACTION;
 use crate::error::Fault;
 use burn::tensor::Tensor;
 use networks::{clip_norm, shards, tensor, tracked_device};
 
-/// Figures of one step.
-pub(super) struct StepSums {
-    pub(super) surrogate: f64,
-    pub(super) value_loss: f64,
-    pub(super) kl: f64,
-    pub(super) kl_rows: usize,
-    pub(super) clipped: usize,
-    pub(super) norm: f64,
-    pub(super) asymmetry: f64,
-}
-
 impl Ppo {
-    /// One step of the optimizer.
+    /// One step of the optimizer; its sums, and the norm of the gradient before clipping.
     pub(super) fn step(
         &mut self,
         minibatch: &Minibatch<'_>,
         sigma: &[f32],
-    ) -> Result<StepSums, Fault> {
+    ) -> Result<(Sums, f32), Fault> {
         let count = minibatch.indices.len();
         let threads = self.config.threads.min(count);
-        let mut states = vec![(); threads];
-        let this = &*self;
-        let mut parts = shards::run(&mut states, |i, ()| {
-            this.differentiate(minibatch, shards::part(count, i, threads), sigma)
-        })
-        .into_iter();
-        let mut total = parts.next().unwrap_or_default();
-        for part in parts {
-            total
-                .gradient
-                .iter_mut()
-                .zip(&part.gradient)
-                .for_each(|(a, b)| *a += b);
-            total.surrogate += part.surrogate;
-            total.value_loss += part.value_loss;
-            total.kl += part.kl;
-            total.kl_rows += part.kl_rows;
-            total.clipped += part.clipped;
-            total.asymmetry += part.asymmetry;
-        }
+        let mut total = shards::total(count, threads, |part| {
+            self.differentiate(minibatch, part, sigma)
+        });
         let waits = minibatch.rows.critic_alone;
         if waits {
             // Of nothing Adam makes nothing, unless it remembers more: a policy without a critic comes without that.
@@ -67,19 +39,11 @@ impl Ppo {
                 *log = log.clamp(limits.start, limits.end);
             }
         }
-        Ok(StepSums {
-            surrogate: total.surrogate,
-            value_loss: total.value_loss,
-            kl: total.kl,
-            kl_rows: total.kl_rows,
-            clipped: total.clipped,
-            asymmetry: total.asymmetry,
-            norm: f64::from(norm),
-        })
+        Ok((total, norm))
     }
 
     /// Clips the gradient to its greatest norm, and refuses what would spoil the weights; the norm before.
-    pub(super) fn check(&self, total: &mut part::Sums) -> Result<f32, Fault> {
+    pub(super) fn check(&self, total: &mut Sums) -> Result<f32, Fault> {
         for (what, value) in [
             ("surrogate loss", total.surrogate),
             ("value loss", total.value_loss),
