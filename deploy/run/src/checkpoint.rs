@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 
 use crate::replace;
 
+mod attachments;
 mod manifest;
 mod refusal;
 
@@ -175,38 +176,6 @@ impl Checkpoints {
         }
     }
 
-    /// Opens the newest that nothing is missing of, and which must be of this shape: what others were
-    /// to attach when they were killed may never have come. Where none is whole, the newest is
-    /// opened; a newest that is damaged is refused as by [`Checkpoints::open_newest`].
-    pub fn open_whole(&self, shape: &str) -> Result<Checkpoint, CheckpointError> {
-        let newest = self.open_newest(shape)?;
-        if self.is_whole(&newest) {
-            return Ok(newest);
-        }
-        let older = self.list().into_iter().rev();
-        let whole = older
-            .filter(|at| *at < newest.iteration)
-            .filter_map(|at| self.inspect(at, shape).ok())
-            .find(|checkpoint| self.is_whole(checkpoint));
-        Ok(whole.unwrap_or(newest))
-    }
-
-    /// Whether all that others were to attach to a checkpoint is there and as it was written.
-    pub fn is_whole(&self, checkpoint: &Checkpoint) -> bool {
-        let there =
-            |name: &String| matches!(self.attachment(checkpoint.iteration, name), Ok(Some(_)));
-        checkpoint.awaited.iter().all(there)
-    }
-
-    /// The iteration of the newest that is whole, whatever its shape.
-    pub fn newest_whole(&self) -> Option<u64> {
-        let newest_first = self.list().into_iter().rev();
-        newest_first
-            .filter_map(|at| Checkpoint::open(&self.path(at)).ok())
-            .find(|checkpoint| self.is_whole(checkpoint))
-            .map(|checkpoint| checkpoint.iteration)
-    }
-
     /// The iteration of the one with the highest score; of equals the oldest.
     pub fn best(&self) -> Option<u64> {
         let score = |at: u64| Manifest::read(&self.path(at)).ok()?.score;
@@ -271,39 +240,6 @@ impl Checkpoints {
         Ok(())
     }
 
-    /// Adds a file of another process (an actor's fleet) to a checkpoint that is already written.
-    /// It carries its own length and checksum, since the manifest cannot know it.
-    ///
-    /// # Panics
-    /// If the name is not a plain file name.
-    pub fn attach(&self, iteration: u64, name: &str, bytes: &[u8]) -> Result<(), CheckpointError> {
-        assert!(is_part_name(name), "{name:?} is not a plain file name");
-        let path = self.path(iteration).join(name);
-        let framed = [Part::of(name, bytes).frame().as_slice(), bytes].concat();
-        replace::replace_file(&path, &framed).map_err(|source| CheckpointError::Io { path, source })
-    }
-
-    /// What [`Checkpoints::attach`] added, checked; `None` when nothing of that name was.
-    pub fn attachment(
-        &self,
-        iteration: u64,
-        name: &str,
-    ) -> Result<Option<Vec<u8>>, CheckpointError> {
-        let path = self.path(iteration).join(name);
-        let framed = match fs::read(&path) {
-            Ok(framed) => framed,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(source) => return Err(CheckpointError::Io { path, source }),
-        };
-        unframe(name, &framed)
-            .map(Some)
-            .map_err(|reason| CheckpointError::Refused {
-                path: self.path(iteration),
-                reason,
-                previous_good: None,
-            })
-    }
-
     fn inspect(&self, iteration: u64, shape: &str) -> Result<Checkpoint, Refusal> {
         let checkpoint = Checkpoint::inspect(&self.path(iteration))?;
         if checkpoint.shape != shape {
@@ -328,14 +264,6 @@ fn write_draft(draft: &Path, iteration: u64, contents: &Contents<'_>) -> io::Res
     let text = serde_json::to_vec_pretty(&Manifest::new(iteration, contents, written))?;
     replace::write_durably(&draft.join(manifest::FILE), &text)?;
     replace::sync_folder(draft)
-}
-
-fn unframe(name: &str, framed: &[u8]) -> Result<Vec<u8>, Refusal> {
-    let Some((frame, bytes)) = framed.split_first_chunk() else {
-        return Err(Refusal::Corrupt(name.to_owned()));
-    };
-    Part::unframe(name, frame).check(bytes)?;
-    Ok(bytes.to_vec())
 }
 
 fn remove_folder(path: &Path) -> io::Result<()> {

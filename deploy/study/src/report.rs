@@ -6,7 +6,9 @@ mod csv;
 mod curves;
 mod figures;
 mod html;
+mod overhead;
 mod page;
+mod runs;
 mod tables;
 
 use crate::results::Results;

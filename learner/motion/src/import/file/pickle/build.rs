@@ -2,7 +2,8 @@
 //!
 //! Separate because this list is what makes the reader safe: nothing here does more than copy bytes.
 
-use super::{Array, Outcome, Reader, Value};
+use super::reader::{Outcome, Reader};
+use super::{Array, Value};
 
 impl Reader<'_> {
     /// A call: the function's name and a tuple of arguments become a value.

@@ -1,0 +1,70 @@
+//! Plans of our own stages, of a foreign file, and of one with mistakes.
+
+use super::*;
+
+#[test]
+fn those_of_ours_can_all_be_run() {
+    for (name, _) in EMBEDDED {
+        let plan = Plan::new(name, None, Some(2), &[]).unwrap();
+        assert!(plan.stages.len() > 1, "{name}");
+        let last = plan.stages.last().unwrap();
+        assert_eq!(last.run, format!("{name}-{name}"));
+        assert!(plan.describe().ends_with("transitions"), "{name}");
+    }
+}
+
+#[test]
+fn a_file_of_stages_has_presets_beside_it_and_values_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("mine.toml"), "[task]\nkernel = 5.0\n").unwrap();
+    let path = folder.path().join("two.toml");
+    let text = "title = \"Two\"\n\
+            [[stages]]\nname = \"smoke\"\niterations = 3\n\
+            [[stages]]\nname = \"b\"\npreset = \"mine.toml\"\niterations = 4\nset = [\"ppo.epochs=9\"]\n";
+    std::fs::write(&path, text).unwrap();
+    let set = ["seed=7".to_owned(), "ppo.epochs=3".to_owned()];
+    let plan = Plan::new(path.to_str().unwrap(), Some("x"), Some(2), &set).unwrap();
+    let number = |stage: usize, key: &str| {
+        let value = plan.stages[stage].config.given(key).unwrap();
+        value
+            .as_float()
+            .or(value.as_integer().map(|x| x as f64))
+            .unwrap()
+    };
+    assert_eq!(
+        [plan.stages[0].run.as_str(), &plan.stages[1].run],
+        ["x-smoke", "x-b"]
+    );
+    assert_eq!(
+        [number(0, "run.iterations"), number(1, "run.iterations")],
+        [3.0, 4.0]
+    );
+    assert_eq!(number(1, "task.kernel"), 5.0);
+    assert_eq!([number(0, "run.seed"), number(1, "run.seed")], [7.0, 7.0]);
+    // What was typed goes before what the file says.
+    assert_eq!(number(1, "ppo.epochs"), 3.0);
+    // Of a run folder only where it began may differ.
+    let mut theirs = Config::parse(&plan.stages[1].config.to_toml(), "theirs").unwrap();
+    theirs.put("run.from", "/somewhere", "theirs");
+    assert_eq!(plan.stages[1].differs_from(&theirs), None);
+    theirs.put("task.kernel", 6.0, "theirs");
+    let differs = plan.stages[1].differs_from(&theirs).unwrap();
+    assert_eq!(
+        differs,
+        ("kernel = 6.0".to_owned(), "kernel = 5.0".to_owned())
+    );
+}
+
+#[test]
+fn mistakes_are_named_with_the_stage() {
+    let problem = |stages: &str| parse(&format!("title = \"t\"\n{stages}")).unwrap_err();
+    let stage = "[[stages]]\nname = \"a\"\niterations = 1\n";
+    assert!(problem("stages = []").contains("at least one"));
+    assert!(problem(&stage.repeat(2)).contains("stage a: there are two"));
+    assert!(problem(&stage.replace('1', "0")).contains("iterations = 0"));
+    assert!(problem(&format!("{stage}itrations = 2")).contains("itrations"));
+    let unknown = Plan::new("athlet", None, None, &[])
+        .unwrap_err()
+        .to_string();
+    assert!(unknown.contains("did you mean `athlete` or"), "{unknown}");
+}

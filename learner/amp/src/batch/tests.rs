@@ -1,0 +1,68 @@
+//! Places of rollouts in the arrays, by hand.
+
+use super::*;
+
+#[test]
+fn rollouts_have_their_own_places() {
+    let mut batch = Batch::default();
+    batch.resize(2, 3, 2);
+    batch.add_segment(1, 4);
+    assert_eq!((batch.rows(), batch.robots()), (16, 8));
+    for i in 0..3 {
+        let part = batch.segment_mut(i);
+        part.ends.fill(i as f32);
+        part.last_observations.fill(i as f32);
+    }
+    assert_eq!(batch.ends[..6], [0.0; 6]);
+    assert_eq!(batch.ends[12..], [2.0; 4]);
+    assert_eq!(batch.last_observations[4 * OBSERVATION], 2.0);
+    batch.remove_segment(1);
+    assert_eq!((batch.rows(), batch.robots()), (10, 6));
+    assert_eq!(batch.ends[6..], [2.0; 4]);
+    assert_eq!(batch.last_observations[2 * OBSERVATION], 2.0);
+    assert_eq!(batch.check(), Ok(()));
+}
+
+#[test]
+fn time_outs_know_their_environment() {
+    let mut batch = Batch::default();
+    batch.resize(2, 2, 3);
+    // second rollout (rows 6..12), second step (9..12), third environment
+    batch.ends[11] = TIME_OUT;
+    batch.ends[0] = FALL;
+    assert_eq!(batch.time_outs().collect::<Vec<_>>(), [(11, 5)]);
+}
+
+#[test]
+fn what_is_not_finite_is_named() {
+    let mut batch = Batch::default();
+    assert_eq!(batch.check(), Err(LearningError::EmptyBatch));
+    batch.resize(1, 2, 2);
+    batch.timeout_observations.fill(f32::NAN); // nothing timed out: these numbers mean nothing
+    assert_eq!(batch.check(), Ok(()));
+    batch.features[3 * FEATURES + 5] = f32::INFINITY;
+    let error = batch.check().expect_err("infinite");
+    assert_eq!(
+        error.to_string(),
+        "field `features` of the batch, row 3, holds inf"
+    );
+    batch.features.pop();
+    assert!(matches!(
+        batch.check(),
+        Err(LearningError::BatchLength {
+            field: "features",
+            ..
+        })
+    ));
+    batch.resize(1, 2, 2);
+    batch.features.fill(0.0);
+    batch.ends[2] = TIME_OUT;
+    assert!(matches!(
+        batch.check(),
+        Err(LearningError::BatchNotFinite {
+            field: "timeout_observations",
+            row: 0,
+            ..
+        })
+    ));
+}

@@ -1,0 +1,119 @@
+//! The table adds up, and blocks do not overlap.
+
+use super::*;
+
+const LAYOUT: RolloutLayout = RolloutLayout {
+    environments: 3,
+    steps: 2,
+};
+
+#[test]
+fn the_table_adds_up() {
+    // 82 + 23 + 23 + six single numbers + 53 + 53 + 2 = 242 per step; 82 + 82 = 164 once.
+    assert_eq!(RolloutLayout::PER_STEP, 242);
+    assert_eq!(RolloutLayout::ONCE, 164);
+    // 3·(2·242 + 164) = 3·648
+    assert_eq!(LAYOUT.len(), 1944);
+}
+
+#[test]
+fn blocks_follow_each_other_in_the_order_of_the_table() {
+    let numbers: Vec<f32> = (0..LAYOUT.len()).map(|index| index as f32).collect();
+    let view = LAYOUT.view(&numbers);
+    assert_eq!(view.observations[0], 0.0);
+    assert_eq!(view.actions[0], 492.0); // after 2·3·82
+    assert_eq!(view.means[0], 630.0); // + 2·3·23
+    assert_eq!(view.log_probs[0], 768.0); // + 2·3·23
+    assert_eq!(view.features[0], 804.0); // + 6 blocks of 2·3
+    assert_eq!(view.last_observations[0], 1452.0); // 2·3·242
+    assert_eq!(view.timeout_observations[0], 1698.0); // + 3·82
+    assert_eq!(view.timeout_observations[245], 1943.0); // the last of all
+    // Second step of the actions: environment 0 begins 3·23 numbers later.
+    assert_eq!(view.step(1).actions[0], 492.0 + 69.0);
+    assert_eq!(view.step(1).actions.len(), 69);
+}
+
+#[test]
+fn what_is_written_by_step_is_read_at_its_place_and_nothing_overlaps() {
+    let mut numbers = vec![0.0; LAYOUT.len()];
+    let mut view = LAYOUT.view_mut(&mut numbers);
+    for step in 0..2 {
+        let now = view.step(step);
+        let blocks = [
+            now.observations,
+            now.actions,
+            now.means,
+            now.log_probs,
+            now.task_rewards,
+            now.energies,
+            now.tracking_errors,
+            now.ends,
+            now.episode_steps,
+            now.features,
+            now.next_features,
+            now.foot_forces,
+        ];
+        for (block, numbers) in blocks.into_iter().enumerate() {
+            // Adding finds numbers that two blocks share.
+            numbers
+                .iter_mut()
+                .for_each(|number| *number += (100 * step + block + 1) as f32);
+        }
+    }
+    view.last_observations.fill(1000.0);
+    view.timeout_observations.fill(2000.0);
+
+    let view = LAYOUT.view(&numbers);
+    assert!(view.step(0).observations.iter().all(|&n| n == 1.0));
+    assert!(view.step(1).observations.iter().all(|&n| n == 101.0));
+    assert!(view.step(1).ends.iter().all(|&n| n == 108.0)); // eighth block
+    assert!(view.step(0).foot_forces.iter().all(|&n| n == 12.0)); // twelfth block
+    assert!(view.last_observations.iter().all(|&n| n == 1000.0));
+    assert!(view.timeout_observations.iter().all(|&n| n == 2000.0));
+    assert!(
+        numbers.iter().all(|&n| n != 0.0),
+        "a number without a block"
+    );
+}
+
+#[test]
+fn numbers_that_cannot_be_are_found_and_named() {
+    let flaw = |change: fn(&mut RolloutViewMut<'_>)| {
+        let mut numbers = vec![0.0; LAYOUT.len()];
+        change(&mut LAYOUT.view_mut(&mut numbers));
+        let flaw = LAYOUT.view(&numbers).flaw();
+        flaw.map(|flaw| (flaw.field, flaw.row))
+    };
+    assert_eq!(flaw(|_| {}), None);
+    let nan = flaw(|view| view.observations[4 * OBSERVATION + 7] = f32::NAN);
+    assert_eq!(nan, Some(("observations", 4)));
+    let infinite = flaw(|view| view.task_rewards[5] = f32::NEG_INFINITY);
+    assert_eq!(infinite, Some(("task_rewards", 5)));
+    assert_eq!(flaw(|view| view.ends[2] = 3.0), Some(("ends", 2)));
+    let negative = flaw(|view| view.episode_steps[0] = -1.0);
+    assert_eq!(negative, Some(("episode_steps", 0)));
+    // Nothing timed out: these numbers mean nothing.
+    assert_eq!(flaw(|view| view.timeout_observations.fill(f32::NAN)), None);
+    let timed_out = flaw(|view| {
+        view.ends[4] = 2.0; // second step, second environment
+        view.timeout_observations[OBSERVATION] = f32::INFINITY;
+    });
+    assert_eq!(timed_out, Some(("timeout_observations", 1)));
+}
+
+#[test]
+fn sizes_that_no_memory_holds_have_no_length() {
+    let most = u32::MAX as usize;
+    let huge = RolloutLayout {
+        environments: most,
+        steps: most,
+    };
+    assert_eq!(huge.checked_len(), None);
+    assert_eq!(LAYOUT.checked_len(), Some(LAYOUT.len()));
+}
+
+#[test]
+#[should_panic(expected = "length of a rollout")]
+fn a_message_of_another_length_is_refused() {
+    LAYOUT.view(&[0.0; 7]);
+}
