@@ -19,6 +19,10 @@ pub struct SingleStanceConfig {
     /// Time for which one foot has to stand and the other to swing until all of the share is paid, s.
     /// Default 0.4, nearly half of a stride of the reference gait at 1 m/s.
     pub seconds: f32,
+    /// Exponent of what a walk is paid, at least 1. Default 1: pay grows with the length of a step. With 2 it grows with
+    /// its square: who is pushed about takes quick small steps, for a longer one earns less than it costs in obedience.
+    #[serde(skip_serializing_if = "is_one")]
+    pub power: f32,
     /// Commanded forward speed up to which long steps are paid, m/s; from there to a run all of the task reward is for
     /// obeying. Default: at any speed. Who sets off at once to a high speed has no time for long steps.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -46,6 +50,10 @@ fn is_nothing(share: &f32) -> bool {
     *share == 0.0
 }
 
+fn is_one(power: &f32) -> bool {
+    *power == 1.0
+}
+
 /// Flight for which all of [`SingleStanceConfig::flight`] is paid, s: an eighth of a step at three steps a second. Twice
 /// a control step: what a foot touches in part of one counts as touched.
 const FLIGHT: f32 = 0.04;
@@ -55,6 +63,7 @@ impl Default for SingleStanceConfig {
         Self {
             share: 0.3,
             seconds: 0.4,
+            power: 1.0,
             walk_to: None,
             run_from: None,
             run_share: None,
@@ -69,6 +78,7 @@ impl SingleStanceConfig {
     pub fn validate(&self) -> Result<(), Invalid> {
         config::share("single_stance.share", self.share)?;
         config::at_least("single_stance.seconds", self.seconds, CONTROL_STEP)?;
+        config::at_least("single_stance.power", self.power, 1.0)?;
         config::share("single_stance.flight", self.flight)?;
         config::require(
             self.flight == 0.0 || self.run_from.is_some(),
@@ -94,9 +104,9 @@ impl SingleStanceConfig {
         })
     }
 
-    /// Factor of the task reward, 1 − s·(1 − p) with p = min(t/T, 1) up to t = 2·T and 0 beyond. t is how
+    /// Factor of the task reward, 1 − s·(1 − pⁿ) with p = min(t/T, 1) up to t = 2·T and 0 beyond. t is how
     /// long the feet have been as they are, the shorter of the two, if just one of them stands, and 0
-    /// otherwise; of a run, how long the foot that was lifted first is in the air, and then f of p is
+    /// otherwise; of a run, how long the foot that was lifted first is in the air, and then n is 1, f of p is
     /// min(flight/40 ms, 1) instead, and s may be another. Between `walk_to` and a run it is 1. Who is told to
     /// stand gets 1 with both feet down, else 1 less `standing`. Without the end at 2·T those told to turn on
     /// the spot stood on one leg.
@@ -120,7 +130,7 @@ impl SingleStanceConfig {
         let share = time / self.seconds;
         let paid = if share > 2.0 { 0.0 } else { share.min(1.0) };
         if !runs {
-            return 1.0 - self.share * (1.0 - paid);
+            return 1.0 - self.share * (1.0 - paid.powf(self.power));
         }
         let paid = paid + self.flight * ((feet.flight() / FLIGHT).min(1.0) - paid);
         1.0 - self.run_share.unwrap_or(self.share) * (1.0 - paid)

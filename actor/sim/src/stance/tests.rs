@@ -31,6 +31,23 @@ fn long_steps_pay_by_hand() {
 }
 
 #[test]
+fn pay_may_grow_with_the_square_but_not_that_of_a_run() {
+    let config = SingleStanceConfig {
+        power: 2.0,
+        run_from: Some(1.8),
+        ..SingleStanceConfig::default()
+    };
+    let mut feet = Footing::default();
+    (0..10).for_each(|_| feet.step(LEFT));
+    // Half of 0.4 s pays a quarter of 0.3, and half of it at a run.
+    let factors = [1.7, 1.8].map(|speed| config.factor(&[speed, 0.0, 0.0], &feet));
+    assert!((factors[0] - 0.775).abs() < 1e-6 && (factors[1] - 0.85).abs() < 1e-6);
+    // All of it pays all, whatever the exponent.
+    (0..10).for_each(|_| feet.step(LEFT));
+    assert!((config.factor(&AHEAD, &feet) - 1.0).abs() < 1e-6);
+}
+
+#[test]
 fn a_run_is_paid_for_its_flight_too() {
     let config = SingleStanceConfig {
         run_from: Some(1.8),
@@ -159,6 +176,12 @@ fn shares_beyond_all_and_times_of_nothing_are_refused() {
     };
     let refused = never.validate().unwrap_err().to_string();
     assert!(refused.contains("run_share = 0.2"), "{refused}");
+    let root = SingleStanceConfig {
+        power: 0.5,
+        ..SingleStanceConfig::default()
+    };
+    let refused = root.validate().unwrap_err().to_string();
+    assert!(refused.contains("single_stance.power = 0.5"), "{refused}");
     let backward = SingleStanceConfig {
         walk_to: Some(-1.0),
         ..SingleStanceConfig::default()
