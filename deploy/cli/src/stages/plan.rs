@@ -10,12 +10,13 @@ use crate::failure::usage;
 use crate::{presets, resolve};
 
 /// Those that come with the program, by name.
-const EMBEDDED: [(&str, &str); 2] = [
+const EMBEDDED: [(&str, &str); 3] = [
     ("athlete", include_str!("../../../stages/athlete.toml")),
     (
         "athlete-robust",
         include_str!("../../../stages/athlete-robust.toml"),
     ),
+    ("sprinter", include_str!("../../../stages/sprinter.toml")),
 ];
 
 /// A file of stages as its author wrote it.
@@ -24,6 +25,8 @@ const EMBEDDED: [(&str, &str); 2] = [
 struct File {
     /// What comes of it, in one line.
     title: String,
+    /// Those of ours, by name, whose stages come before these.
+    after: Option<String>,
     stages: Vec<Stage>,
 }
 
@@ -194,9 +197,17 @@ pub(super) fn list() -> String {
 }
 
 fn parse(text: &str) -> Result<File, String> {
-    let file: File = toml::from_str(text).map_err(|error| error.to_string())?;
+    let mut file: File = toml::from_str(text).map_err(|error| error.to_string())?;
     if file.stages.is_empty() {
         return Err("stages: none; write at least one".into());
+    }
+    if let Some(after) = &file.after {
+        let ours = EMBEDDED.iter().find(|(name, _)| name == after);
+        let (_, text) = ours.ok_or_else(|| {
+            let remedy = run::nearest::remedy(after, &EMBEDDED.map(|(name, _)| name));
+            format!("after: there are no stages `{after}`; {remedy}")
+        })?;
+        file.stages.splice(0..0, parse(text)?.stages);
     }
     for (i, stage) in file.stages.iter().enumerate() {
         let name = &stage.name;

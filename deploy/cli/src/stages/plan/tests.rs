@@ -56,6 +56,26 @@ fn a_file_of_stages_has_presets_beside_it_and_values_of_its_own() {
 }
 
 #[test]
+fn stages_of_ours_come_before_others() {
+    let stage = "[[stages]]\nname = \"mine\"\niterations = 1\n";
+    let file = parse(&format!("title = \"t\"\nafter = \"athlete\"\n{stage}")).unwrap();
+    let names: Vec<_> = file.stages.iter().map(|stage| &stage.name).collect();
+    assert_eq!([names[0], names[8], names[9]], ["agile", "athlete", "mine"]);
+    assert_eq!(names.len(), 10);
+    let problem = |stages: &str| parse(&format!("title = \"t\"\n{stages}")).unwrap_err();
+    let unknown = problem(&format!("after = \"athlet\"\n{stage}"));
+    assert!(
+        unknown.contains("after: there are no stages `athlet`; did you mean `athlete`"),
+        "{unknown}"
+    );
+    let twice = problem(&format!(
+        "after = \"athlete\"\n{}",
+        stage.replace("mine", "keen")
+    ));
+    assert!(twice.contains("stage keen: there are two"), "{twice}");
+}
+
+#[test]
 fn mistakes_are_named_with_the_stage() {
     let problem = |stages: &str| parse(&format!("title = \"t\"\n{stages}")).unwrap_err();
     let stage = "[[stages]]\nname = \"a\"\niterations = 1\n";
