@@ -20,7 +20,7 @@ pub struct SingleStanceConfig {
     /// Default 0.4, nearly half of a stride of the reference gait at 1 m/s.
     pub seconds: f32,
     /// Exponent of what a walk is paid, at least 1. Default 1: pay grows with the length of a step. With 2 it grows with
-    /// its square: who is pushed about takes quick small steps, for a longer one earns less than it costs in obedience.
+    /// its square: where robots are pushed about, they took quick small steps however large the share was.
     #[serde(skip_serializing_if = "is_one")]
     pub power: f32,
     /// Commanded forward speed up to which long steps are paid, m/s; from there to a run all of the task reward is for

@@ -103,27 +103,16 @@ fn intervals_are_seconds_in_steps() {
 
 #[test]
 fn bad_values_are_named() {
-    let config = CommandConfig {
+    let refused = |config: CommandConfig| config.validate().unwrap_err().to_string();
+    let forward = refused(CommandConfig {
         forward: [1.0, 0.5],
         ..CommandConfig::default()
-    };
-    assert!(
-        config
-            .validate()
-            .unwrap_err()
-            .to_string()
-            .contains("command.forward")
-    );
-    let config = CommandConfig {
+    });
+    assert!(forward.contains("command.forward"), "{forward}");
+    let share = refused(CommandConfig {
         matched_share: 1.5,
         ..CommandConfig::default()
-    };
-    assert!(
-        config
-            .validate()
-            .unwrap_err()
-            .to_string()
-            .contains("command.matched_share")
-    );
+    });
+    assert!(share.contains("command.matched_share"), "{share}");
     CommandConfig::default().validate().unwrap();
 }

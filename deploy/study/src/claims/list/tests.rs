@@ -3,6 +3,10 @@
 use super::*;
 use crate::results::sample;
 
+// Final values of six seeds of two methods, all of one below all of the other.
+const LOW: [f64; 6] = [1.0, 1.1, 1.2, 1.05, 1.15, 1.12];
+const HIGH: [f64; 6] = [2.0, 2.1, 2.3, 2.2, 2.4, 2.5];
+
 fn verdict(results: &Results, part: &str) -> Claim {
     let claims = all(results);
     let found = claims.into_iter().find(|claim| claim.text.contains(part));
@@ -34,8 +38,7 @@ fn three_seeds_decide_nothing_and_the_report_says_so() {
 
 #[test]
 fn six_seeds_on_one_side_support_or_contradict() {
-    let low: &[f64] = &[1.0, 1.1, 1.2, 1.05, 1.15, 1.12];
-    let high: &[f64] = &[2.0, 2.1, 2.3, 2.2, 2.4, 2.5];
+    let (low, high) = (&LOW[..], &HIGH[..]);
     let results = sample::results(&[("ampco", low), ("amp-0.5", high), ("adamimic", high)]);
     let claim = verdict(&results, "70 % less energy");
     assert_eq!(claim.verdict, Verdict::Supported, "{}", claim.evidence);
@@ -66,8 +69,7 @@ fn six_seeds_on_one_side_support_or_contradict() {
 
 #[test]
 fn runs_that_did_not_reach_phase_two_are_too_short() {
-    let low: &[f64] = &[1.0, 1.1, 1.2, 1.05, 1.15, 1.12];
-    let high: &[f64] = &[2.0, 2.1, 2.3, 2.2, 2.4, 2.5];
+    let (low, high) = (&LOW[..], &HIGH[..]);
     let mut results = sample::results(&[("ampco", low), ("adamimic", high)]);
     for record in &mut results.runs[0].records {
         record.switched_at = None;
