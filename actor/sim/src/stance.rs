@@ -5,6 +5,7 @@
 //! tenth of a second; how long a foot stays in the air is beyond it.
 
 use crate::config::{self, Invalid};
+use crate::kind::Kind;
 use crate::world::CONTROL_STEP;
 use g1::gait::CONTACT_FORCE;
 use serde::{Deserialize, Serialize};
@@ -23,6 +24,10 @@ pub struct SingleStanceConfig {
     /// its square: where robots are pushed about, they took quick small steps however large the share was.
     #[serde(skip_serializing_if = "is_one")]
     pub power: f32,
+    /// Share of the task reward that is paid for it to who is told anything but straight ahead, instead of `share`.
+    /// Default: `share`. Steps aside, back and on the spot are shorter, and the longer they get the harder pushes throw.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub aside_share: Option<f32>,
     /// Commanded forward speed up to which long steps are paid, m/s; from there to a run all of the task reward is for
     /// obeying. Default: at any speed. Who sets off at once to a high speed has no time for long steps.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -64,6 +69,7 @@ impl Default for SingleStanceConfig {
             share: 0.3,
             seconds: 0.4,
             power: 1.0,
+            aside_share: None,
             walk_to: None,
             run_from: None,
             run_share: None,
@@ -79,6 +85,9 @@ impl SingleStanceConfig {
         config::share("single_stance.share", self.share)?;
         config::at_least("single_stance.seconds", self.seconds, CONTROL_STEP)?;
         config::at_least("single_stance.power", self.power, 1.0)?;
+        if let Some(share) = self.aside_share {
+            config::share("single_stance.aside_share", share)?;
+        }
         config::share("single_stance.flight", self.flight)?;
         config::require(
             self.flight == 0.0 || self.run_from.is_some(),
@@ -107,7 +116,7 @@ impl SingleStanceConfig {
     /// Factor of the task reward, 1 − s·(1 − pⁿ) with p = min(t/T, 1) up to t = 2·T and 0 beyond. t is how
     /// long the feet have been as they are, the shorter of the two, if just one of them stands, and 0
     /// otherwise; of a run, how long the foot that was lifted first is in the air, and then n is 1, f of p is
-    /// min(flight/40 ms, 1) instead, and s may be another. Between `walk_to` and a run it is 1. Who is told to
+    /// min(flight/40 ms, 1) instead, and s may be another, as it may be of any way but straight ahead. Between `walk_to` and a run it is 1. Who is told to
     /// stand gets 1 with both feet down, else 1 less `standing`. Without the end at 2·T those told to turn on
     /// the spot stood on one leg.
     pub(crate) fn factor(&self, command: &[f32; 3], feet: &Footing) -> f32 {
@@ -130,7 +139,11 @@ impl SingleStanceConfig {
         let share = time / self.seconds;
         let paid = if share > 2.0 { 0.0 } else { share.min(1.0) };
         if !runs {
-            return 1.0 - self.share * (1.0 - paid.powf(self.power));
+            let share = match Kind::of(*command) {
+                Kind::Forward => self.share,
+                _ => self.aside_share.unwrap_or(self.share),
+            };
+            return 1.0 - share * (1.0 - paid.powf(self.power));
         }
         let paid = paid + self.flight * ((feet.flight() / FLIGHT).min(1.0) - paid);
         1.0 - self.run_share.unwrap_or(self.share) * (1.0 - paid)

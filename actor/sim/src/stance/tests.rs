@@ -48,6 +48,30 @@ fn pay_may_grow_with_the_square_but_not_that_of_a_run() {
 }
 
 #[test]
+fn ways_aside_back_and_on_the_spot_may_have_a_share_of_their_own() {
+    let feet = Footing::default();
+    let config = |aside_share| SingleStanceConfig {
+        aside_share,
+        run_from: Some(1.8),
+        run_share: Some(0.1),
+        ..SingleStanceConfig::default()
+    };
+    let others = [
+        [-0.5, 0.0, 0.0],
+        [0.0, 0.3, 0.0],
+        [0.0, 0.0, 0.5],
+        [0.5, 0.0, 0.5],
+    ];
+    for command in others {
+        assert_eq!(config(Some(0.2)).factor(&command, &feet), 0.8);
+        assert_eq!(config(None).factor(&command, &feet), 0.7);
+    }
+    // Straight ahead it does not count, nor at a run, straight or not.
+    assert_eq!(config(Some(0.2)).factor(&AHEAD, &feet), 0.7);
+    assert_eq!(config(Some(0.2)).factor(&[2.0, 0.0, 0.4], &feet), 0.9);
+}
+
+#[test]
 fn a_run_is_paid_for_its_flight_too() {
     let config = SingleStanceConfig {
         run_from: Some(1.8),
@@ -182,6 +206,15 @@ fn shares_beyond_all_and_times_of_nothing_are_refused() {
     };
     let refused = root.validate().unwrap_err().to_string();
     assert!(refused.contains("single_stance.power = 0.5"), "{refused}");
+    let aside = SingleStanceConfig {
+        aside_share: Some(1.2),
+        ..SingleStanceConfig::default()
+    };
+    let refused = aside.validate().unwrap_err().to_string();
+    assert!(
+        refused.contains("single_stance.aside_share = 1.2"),
+        "{refused}"
+    );
     let backward = SingleStanceConfig {
         walk_to: Some(-1.0),
         ..SingleStanceConfig::default()
