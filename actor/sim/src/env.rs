@@ -8,11 +8,12 @@ use crate::actuator;
 use crate::kind::Pools;
 use crate::physics::Bodies;
 use crate::randomization::Table;
-use crate::stance::Footing;
+use crate::stance::{Foot, Footing};
 use crate::start::{self, Starts};
 use crate::stray::Astray;
 use crate::task::{self, End, TaskConfig};
-use g1::{JOINTS, OBSERVATION, RobotState, observation};
+use g1::links::{LEFT_FOOT, RIGHT_FOOT};
+use g1::{JOINTS, OBSERVATION, RobotState, kinematics, observation};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
@@ -170,11 +171,10 @@ impl Environment {
         };
         let (energy, foot_forces) = bodies.work_and_forces(index);
         self.feet.step(foot_forces);
-        let long_steps = setting
-            .task
-            .single_stance
-            .as_ref()
-            .map_or(1.0, |pay| pay.factor(&self.command, &self.feet));
+        let long_steps = setting.task.single_stance.as_ref().map_or(1.0, |pay| {
+            let height = |foot| sole_height(&self.state, foot);
+            pay.factor(&self.command, &self.feet, height)
+        });
         let obeys = setting.task.reward(&self.command, &self.state, energy);
         Outcome {
             task_reward: obeys * long_steps,
@@ -241,6 +241,15 @@ impl Environment {
             faulty: true,
         }
     }
+}
+
+/// Height of the lowest corner of a sole, m.
+fn sole_height(state: &RobotState, foot: Foot) -> f32 {
+    let link = match foot {
+        Foot::Left => LEFT_FOOT,
+        Foot::Right => RIGHT_FOOT,
+    };
+    kinematics::lowest_sole_point(&kinematics::forward_state(state), link)
 }
 
 /// Counts a timer down; whether it has just run out.

@@ -28,6 +28,10 @@ pub struct SingleStanceConfig {
     /// Default: `share`. Steps aside, back and on the spot are shorter, and the longer they get the harder pushes throw.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aside_share: Option<f32>,
+    /// Height of the swinging foot's sole up to which a walk's steps are paid in full, m; from there pay falls to nothing
+    /// at twice it. Default: any height. Long steps were bought by lifting feet 14 cm, at twice the joules.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lift: Option<f32>,
     /// Commanded forward speed up to which long steps are paid, m/s; from there to a run all of the task reward is for
     /// obeying. Default: at any speed. Who sets off at once to a high speed has no time for long steps.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -63,6 +67,9 @@ fn is_one(power: &f32) -> bool {
 /// a control step: what a foot touches in part of one counts as touched.
 const FLIGHT: f32 = 0.04;
 
+/// Least [`SingleStanceConfig::lift`], m: no foot swings lower than that without touching.
+const LEAST_LIFT: f32 = 0.01;
+
 impl Default for SingleStanceConfig {
     fn default() -> Self {
         Self {
@@ -70,6 +77,7 @@ impl Default for SingleStanceConfig {
             seconds: 0.4,
             power: 1.0,
             aside_share: None,
+            lift: None,
             walk_to: None,
             run_from: None,
             run_share: None,
@@ -104,6 +112,9 @@ impl SingleStanceConfig {
                 "say with run_from from which speed on it counts",
             )?;
         }
+        if let Some(height) = self.lift {
+            config::at_least("single_stance.lift", height, LEAST_LIFT)?;
+        }
         if let Some(speed) = self.walk_to {
             config::at_least("single_stance.walk_to", speed, 0.0)?;
         }
@@ -118,8 +129,14 @@ impl SingleStanceConfig {
     /// otherwise; of a run, how long the foot that was lifted first is in the air, and then n is 1, f of p is
     /// min(flight/40 ms, 1) instead, and s may be another, as it may be of any way but straight ahead. Between `walk_to` and a run it is 1. Who is told to
     /// stand gets 1 with both feet down, else 1 less `standing`. Without the end at 2·T those told to turn on
-    /// the spot stood on one leg.
-    pub(crate) fn factor(&self, command: &[f32; 3], feet: &Footing) -> f32 {
+    /// the spot stood on one leg. With `lift` l, pⁿ of a walk is times min(max(2 − h/l, 0), 1), h the height of the
+    /// swinging foot (m), which is asked for only then.
+    pub(crate) fn factor(
+        &self,
+        command: &[f32; 3],
+        feet: &Footing,
+        height: impl FnOnce(Foot) -> f32,
+    ) -> f32 {
         if *command == [0.0; 3] {
             return if feet.down == [true; 2] {
                 1.0
@@ -143,11 +160,22 @@ impl SingleStanceConfig {
                 Kind::Forward => self.share,
                 _ => self.aside_share.unwrap_or(self.share),
             };
-            return 1.0 - share * (1.0 - paid.powf(self.power));
+            let low = match (self.lift, feet.swinging()) {
+                (Some(lift), Some(foot)) => (2.0 - height(foot) / lift).clamp(0.0, 1.0),
+                _ => 1.0,
+            };
+            return 1.0 - share * (1.0 - low * paid.powf(self.power));
         }
         let paid = paid + self.flight * ((feet.flight() / FLIGHT).min(1.0) - paid);
         1.0 - self.run_share.unwrap_or(self.share) * (1.0 - paid)
     }
+}
+
+/// A foot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Foot {
+    Left,
+    Right,
 }
 
 /// Which feet stand, and for how long.
@@ -169,6 +197,15 @@ impl Footing {
             }
             self.down[foot] = down;
             self.steps[foot] += 1;
+        }
+    }
+
+    /// The foot in the air while the other stands; none with both or none on the ground.
+    fn swinging(&self) -> Option<Foot> {
+        match self.down {
+            [false, true] => Some(Foot::Left),
+            [true, false] => Some(Foot::Right),
+            _ => None,
         }
     }
 

@@ -8,13 +8,18 @@ const BOTH: [f32; 2] = [160.0, 155.0];
 const NONE: [f32; 2] = [0.0; 2];
 const AHEAD: [f32; 3] = [1.0, 0.0, 0.0];
 
+/// Soles that never leave the ground by a millimetre.
+fn flat(_: Foot) -> f32 {
+    0.0
+}
+
 /// Factor after steps with these forces.
 fn factor(steps: &[([f32; 2], usize)]) -> f32 {
     let mut feet = Footing::default();
     for &(forces, count) in steps {
         (0..count).for_each(|_| feet.step(forces));
     }
-    SingleStanceConfig::default().factor(&AHEAD, &feet)
+    SingleStanceConfig::default().factor(&AHEAD, &feet, flat)
 }
 
 #[test]
@@ -40,11 +45,11 @@ fn pay_may_grow_with_the_square_but_not_that_of_a_run() {
     let mut feet = Footing::default();
     (0..10).for_each(|_| feet.step(LEFT));
     // Half of 0.4 s pays a quarter of 0.3, and half of it at a run.
-    let factors = [1.7, 1.8].map(|speed| config.factor(&[speed, 0.0, 0.0], &feet));
+    let factors = [1.7, 1.8].map(|speed| config.factor(&[speed, 0.0, 0.0], &feet, flat));
     assert!((factors[0] - 0.775).abs() < 1e-6 && (factors[1] - 0.85).abs() < 1e-6);
     // All of it pays all, whatever the exponent.
     (0..10).for_each(|_| feet.step(LEFT));
-    assert!((config.factor(&AHEAD, &feet) - 1.0).abs() < 1e-6);
+    assert!((config.factor(&AHEAD, &feet, flat) - 1.0).abs() < 1e-6);
 }
 
 #[test]
@@ -63,12 +68,36 @@ fn ways_aside_back_and_on_the_spot_may_have_a_share_of_their_own() {
         [0.5, 0.0, 0.5],
     ];
     for command in others {
-        assert_eq!(config(Some(0.2)).factor(&command, &feet), 0.8);
-        assert_eq!(config(None).factor(&command, &feet), 0.7);
+        assert_eq!(config(Some(0.2)).factor(&command, &feet, flat), 0.8);
+        assert_eq!(config(None).factor(&command, &feet, flat), 0.7);
     }
     // Straight ahead it does not count, nor at a run, straight or not.
-    assert_eq!(config(Some(0.2)).factor(&AHEAD, &feet), 0.7);
-    assert_eq!(config(Some(0.2)).factor(&[2.0, 0.0, 0.4], &feet), 0.9);
+    assert_eq!(config(Some(0.2)).factor(&AHEAD, &feet, flat), 0.7);
+    assert_eq!(config(Some(0.2)).factor(&[2.0, 0.0, 0.4], &feet, flat), 0.9);
+}
+
+#[test]
+fn who_lifts_a_foot_too_high_is_paid_less_for_the_step_by_hand() {
+    let config = SingleStanceConfig {
+        lift: Some(0.08),
+        run_from: Some(1.8),
+        ..SingleStanceConfig::default()
+    };
+    let mut feet = Footing::default();
+    (0..10).for_each(|_| feet.step(LEFT));
+    let factor = |speed: f32, right: f32| {
+        config.factor(&[speed, 0.0, 0.0], &feet, |foot| match foot {
+            Foot::Left => 9.0,
+            Foot::Right => right,
+        })
+    };
+    let close = |got: f32, expected: f32| assert!((got - expected).abs() < 1e-6, "{got}");
+    // Half of 0.4 s pays half of 0.3; 0.12 m is half-way from 0.08 to 0.16: a quarter.
+    close(factor(1.0, 0.08), 0.85);
+    close(factor(1.0, 0.12), 0.775);
+    close(factor(1.0, 0.2), 0.7);
+    // A run's feet may rise as they like.
+    close(factor(1.8, 0.2), 0.85);
 }
 
 #[test]
@@ -80,7 +109,7 @@ fn a_run_is_paid_for_its_flight_too() {
     let mut feet = Footing::default();
     let mut step = |forces, count| {
         (0..count).for_each(|_| feet.step(forces));
-        [1.7, 1.8].map(|speed| config.factor(&[speed, 0.0, 0.0], &feet))
+        [1.7, 1.8].map(|speed| config.factor(&[speed, 0.0, 0.0], &feet, flat))
     };
     let close = |got: [f32; 2], expected: [f32; 2]| {
         let near = |i: usize| (got[i] - expected[i]).abs() < 1e-6;
@@ -105,7 +134,7 @@ fn flight_pays_until_the_next_foot_is_lifted_and_a_walk_has_none() {
     let mut feet = Footing::default();
     let mut paid = |forces, count| {
         (0..count).for_each(|_| feet.step(forces));
-        [1.7, 1.8].map(|speed| config.factor(&[speed, 0.0, 0.0], &feet))[1]
+        [1.7, 1.8].map(|speed| config.factor(&[speed, 0.0, 0.0], &feet, flat))[1]
     };
     let close = |got: f32, expected: f32| assert!((got - expected).abs() < 1e-6, "{got}");
     close(paid(BOTH, 9), 0.0);
@@ -132,7 +161,7 @@ fn a_part_of_a_run_is_paid_for_flight() {
     let mut feet = Footing::default();
     (0..10).for_each(|_| feet.step(LEFT));
     // Half of 0.4 s pays half of the share, of which half is for flight at a run: none yet.
-    let factors = [1.7, 1.8].map(|speed| config.factor(&[speed, 0.0, 0.0], &feet));
+    let factors = [1.7, 1.8].map(|speed| config.factor(&[speed, 0.0, 0.0], &feet, flat));
     assert!((factors[0] - 0.85).abs() < 1e-6 && (factors[1] - 0.775).abs() < 1e-6);
 }
 
@@ -146,7 +175,7 @@ fn beyond_a_walk_and_below_a_run_only_obeying_is_paid() {
     };
     // Both feet down: no long step is paid for, and neither is flight.
     let feet = Footing::default();
-    let factors = [1.2, 1.3, 1.8].map(|speed| config.factor(&[speed, 0.0, 0.0], &feet));
+    let factors = [1.2, 1.3, 1.8].map(|speed| config.factor(&[speed, 0.0, 0.0], &feet, flat));
     assert_eq!(factors, [0.7, 1.0, 0.9]);
 }
 
@@ -154,8 +183,8 @@ fn beyond_a_walk_and_below_a_run_only_obeying_is_paid() {
 fn who_is_told_to_stand_is_not_asked_to_lift_a_foot() {
     let feet = Footing::default();
     let config = SingleStanceConfig::default();
-    assert_eq!(config.factor(&[0.0; 3], &feet), 1.0);
-    assert_eq!(config.factor(&[0.0, 0.0, 0.5], &feet), 0.7);
+    assert_eq!(config.factor(&[0.0; 3], &feet, flat), 1.0);
+    assert_eq!(config.factor(&[0.0, 0.0, 0.5], &feet, flat), 0.7);
 }
 
 #[test]
@@ -166,11 +195,11 @@ fn who_is_told_to_stand_may_be_asked_to_keep_both_feet_down() {
     };
     let mut feet = Footing::default();
     feet.step(BOTH);
-    assert_eq!(config.factor(&[0.0; 3], &feet), 1.0);
-    assert_eq!(config.factor(&[0.0, 0.0, 0.5], &feet), 0.7);
+    assert_eq!(config.factor(&[0.0; 3], &feet, flat), 1.0);
+    assert_eq!(config.factor(&[0.0, 0.0, 0.5], &feet, flat), 0.7);
     for forces in [LEFT, NONE] {
         feet.step(forces);
-        assert_eq!(config.factor(&[0.0; 3], &feet), 0.6);
+        assert_eq!(config.factor(&[0.0; 3], &feet, flat), 0.6);
     }
 }
 
@@ -215,6 +244,12 @@ fn shares_beyond_all_and_times_of_nothing_are_refused() {
         refused.contains("single_stance.aside_share = 1.2"),
         "{refused}"
     );
+    let flat_footed = SingleStanceConfig {
+        lift: Some(0.0),
+        ..SingleStanceConfig::default()
+    };
+    let refused = flat_footed.validate().unwrap_err().to_string();
+    assert!(refused.contains("single_stance.lift = 0"), "{refused}");
     let backward = SingleStanceConfig {
         walk_to: Some(-1.0),
         ..SingleStanceConfig::default()
