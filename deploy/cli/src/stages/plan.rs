@@ -16,7 +16,7 @@ const EMBEDDED: [(&str, &str); 3] = [
         "athlete-robust",
         include_str!("../../../stages/athlete-robust.toml"),
     ),
-    ("sprinter", include_str!("../../../stages/sprinter.toml")),
+    ("strider", include_str!("../../../stages/strider.toml")),
 ];
 
 /// A file of stages as its author wrote it.
