@@ -25,7 +25,7 @@ pub struct SingleStanceConfig {
     #[serde(skip_serializing_if = "is_one")]
     pub power: f32,
     /// Share of the task reward that is paid for it to who is told anything but straight ahead, instead of `share`.
-    /// Default: `share`. Steps aside, back and on the spot are shorter, and the longer they get the harder pushes throw.
+    /// Default: `share`. Robots that were paid alike in all directions fell more often when pushed aside and on the spot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aside_share: Option<f32>,
     /// Height of the swinging foot's sole up to which a walk's steps are paid in full, m; from there pay falls to nothing

@@ -2,6 +2,32 @@
 
 use super::*;
 use crate::stance::SingleStanceConfig;
+use g1::gait::CONTACT_FORCE;
+use g1::kinematics;
+use g1::links::LEFT_FOOT;
+
+/// Straight ahead, and nobody falls.
+fn ahead(physics: Physics) -> TaskConfig {
+    TaskConfig {
+        physics,
+        command: CommandConfig {
+            forward: [0.5, 0.5],
+            pure_share: 1.0,
+            standing_share: 0.0,
+            ..CommandConfig::default()
+        },
+        fall_height: 0.0,
+        fall_upright: -1.0,
+        ..TaskConfig::default()
+    }
+}
+
+/// The left hip and knee pull their foot up.
+fn left_foot_up() -> [f32; ACTION] {
+    let mut action = [0.0; ACTION];
+    (action[0], action[3]) = (-3.0, 4.0);
+    action
+}
 
 #[test]
 fn reward_and_error_are_those_of_the_state_reached_under_the_old_command() {
@@ -35,18 +61,7 @@ fn reward_and_error_are_those_of_the_state_reached_under_the_old_command() {
 #[test]
 fn the_share_of_long_steps_is_paid_to_who_stands_on_one_foot() {
     for physics in ENGINES {
-        let plain = TaskConfig {
-            physics,
-            command: CommandConfig {
-                forward: [0.5, 0.5],
-                pure_share: 1.0,
-                standing_share: 0.0,
-                ..CommandConfig::default()
-            },
-            fall_height: 0.0,
-            fall_upright: -1.0,
-            ..TaskConfig::default()
-        };
+        let plain = ahead(physics);
         let paying = TaskConfig {
             single_stance: Some(SingleStanceConfig {
                 share: 0.5,
@@ -57,12 +72,9 @@ fn the_share_of_long_steps_is_paid_to_who_stands_on_one_foot() {
         };
         let run = |task: &TaskConfig| {
             let mut fleet = fleet(task, &RandomizationConfig::none(), 1, 9);
-            // The left hip and knee pull their foot up.
-            let mut action = [0.0; ACTION];
-            (action[0], action[3]) = (-3.0, 4.0);
             let mut rows = Vec::new();
             for _ in 0..25 {
-                let out = step(&mut fleet, &action);
+                let out = step(&mut fleet, &left_foot_up());
                 assert_eq!(out.ends[0], 0.0);
                 rows.push((
                     out.task_rewards[0],
@@ -75,7 +87,7 @@ fn the_share_of_long_steps_is_paid_to_who_stands_on_one_foot() {
         let mut one_foot = 0;
         let mut seen = [false; 2];
         for ((plain, forces), (paid, _)) in without.iter().zip(&with) {
-            let [left, right] = forces.map(|force| force > g1::gait::CONTACT_FORCE);
+            let [left, right] = forces.map(|force| force > CONTACT_FORCE);
             one_foot = if !left && right { one_foot + 1 } else { 0 };
             // 0.1 s are five steps; the right foot has stood for longer unless it lifted.
             let share = if left == right { 0.5 } else { 1.0 };
@@ -90,5 +102,43 @@ fn the_share_of_long_steps_is_paid_to_who_stands_on_one_foot() {
             }
         }
         assert_eq!(seen, [true; 2], "{physics:?}: both cases came");
+    }
+}
+
+#[test]
+fn a_foot_is_paid_by_its_own_height_in_the_world() {
+    for physics in ENGINES {
+        let lift = 0.03;
+        let task = TaskConfig {
+            single_stance: Some(SingleStanceConfig {
+                share: 0.5,
+                seconds: 0.1, // five to ten steps pay all
+                lift: Some(lift),
+                ..SingleStanceConfig::default()
+            }),
+            ..ahead(physics)
+        };
+        let mut fleet = fleet(&task, &RandomizationConfig::none(), 1, 9);
+        let (mut one_foot, mut high) = (0, 0);
+        for _ in 0..25 {
+            let command = fleet.command(0);
+            let out = step(&mut fleet, &left_foot_up());
+            let state = fleet.state(0);
+            let obeys = task.reward(&command, state, out.energies[0]);
+            let [left, right] = [0, 1].map(|foot| out.foot_forces[foot] > CONTACT_FORCE);
+            let bodies = kinematics::forward_state(state);
+            let height = kinematics::lowest_sole_point(&bodies, LEFT_FOOT);
+            one_foot = if !left && right { one_foot + 1 } else { 0 };
+            if (5..=10).contains(&one_foot) {
+                let low = (2.0 - height / lift).clamp(0.0, 1.0);
+                let paid = out.task_rewards[0] / obeys;
+                assert!(
+                    (paid - (0.5 + 0.5 * low)).abs() < 1e-4,
+                    "{physics:?}: {paid} at {height} m"
+                );
+                high += usize::from(low < 1.0);
+            }
+        }
+        assert!(high > 0, "{physics:?}: no foot rose above {lift} m");
     }
 }
