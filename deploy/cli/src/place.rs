@@ -21,6 +21,7 @@ impl Place {
     pub(crate) fn find(&self, run: Option<&str>) -> Result<Folder> {
         match run {
             Some(run) if is_run(Path::new(run)) => Ok(Folder::open(Path::new(run))?),
+            Some(run) if Path::new(run).components().count() > 1 => Err(no_run(Path::new(run))),
             Some(name) => Ok(Folder::find(&self.runs_dir, name)?),
             None => self.newest(),
         }
@@ -55,6 +56,19 @@ impl Place {
 /// Something with a path separator in it that holds a configuration, or the current folder.
 fn is_run(path: &Path) -> bool {
     (path.components().count() > 1 || path == Path::new(".")) && path.join("config.toml").is_file()
+}
+
+/// Says which part of a path is missing: who mistypes a folder does not mean a run's name.
+fn no_run(path: &Path) -> anyhow::Error {
+    let why = if path.is_dir() {
+        "has no config.toml, so it is neither a run nor a shipped policy"
+    } else {
+        "is not a folder"
+    };
+    usage(format!(
+        "{} {why}; give a run's name, or the folder of a run or of a shipped policy",
+        path.display()
+    ))
 }
 
 fn written(run: &Path) -> Option<SystemTime> {
@@ -102,6 +116,20 @@ mod tests {
             place.find(Some(path.to_str().unwrap())).unwrap().name(),
             "middle"
         );
+    }
+
+    #[test]
+    fn a_path_without_a_run_is_refused_as_a_path() {
+        let (_folder, place) = place();
+        let refused = |path: PathBuf| {
+            let refusal = place.find(Some(path.to_str().unwrap())).unwrap_err();
+            refusal.to_string()
+        };
+        let missing = refused(place.runs_dir.join("athlet"));
+        assert!(missing.contains("athlet is not a folder"), "{missing}");
+        std::fs::create_dir(place.runs_dir.join("empty")).unwrap();
+        let empty = refused(place.runs_dir.join("empty"));
+        assert!(empty.contains("empty has no config.toml"), "{empty}");
     }
 
     #[test]
