@@ -25,7 +25,8 @@ pub struct SingleStanceConfig {
     #[serde(skip_serializing_if = "is_one")]
     pub power: f32,
     /// Share of the task reward that is paid for it to who is told anything but straight ahead, instead of `share`.
-    /// Default: `share`. Robots that were paid alike in all directions fell more often when pushed aside and on the spot.
+    /// Default: `share`. Robots that were paid alike in all directions fell more often aside and on the spot; what else
+    /// changed when they no longer did has not been tried apart.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aside_share: Option<f32>,
     /// Height of the swinging foot's sole up to which a walk's steps are paid in full, m; from there pay falls to nothing
@@ -67,7 +68,7 @@ fn is_one(power: &f32) -> bool {
 /// a control step: what a foot touches in part of one counts as touched.
 const FLIGHT: f32 = 0.04;
 
-/// Least [`SingleStanceConfig::lift`], m: no foot swings lower than that without touching.
+/// Least [`SingleStanceConfig::lift`], m: with less, hardly any step would be low enough to be paid.
 const LEAST_LIFT: f32 = 0.01;
 
 impl Default for SingleStanceConfig {
@@ -124,13 +125,14 @@ impl SingleStanceConfig {
         })
     }
 
-    /// Factor of the task reward, 1 − s·(1 − pⁿ) with p = min(t/T, 1) up to t = 2·T and 0 beyond. t is how
-    /// long the feet have been as they are, the shorter of the two, if just one of them stands, and 0
-    /// otherwise; of a run, how long the foot that was lifted first is in the air, and then n is 1, f of p is
-    /// min(flight/40 ms, 1) instead, and s may be another, as it may be of any way but straight ahead. Between `walk_to` and a run it is 1. Who is told to
-    /// stand gets 1 with both feet down, else 1 less `standing`. Without the end at 2·T those told to turn on
-    /// the spot stood on one leg. With `lift` l, pⁿ of a walk is times min(max(2 − h/l, 0), 1), h the height of the
-    /// swinging foot (m), which is asked for only then.
+    /// Factor of the task reward, 1 − s·(1 − pⁿ) with p = min(t/T, 1) up to t = 2·T and 0 beyond. t is how long the
+    /// feet have been as they are, the shorter of the two, if just one of them stands, and 0 otherwise. s may be another
+    /// of any way but straight ahead. With `lift` l, pⁿ is times min(max(2 − h/l, 0), 1), h the height of the swinging
+    /// foot (m), which is asked for only then. Without the end at 2·T those told to turn on the spot stood on one leg.
+    ///
+    /// Of a run, t is how long the foot that was lifted first is in the air, n is 1, no height counts, f of p is
+    /// min(flight/40 ms, 1) instead, and s may be another. Between `walk_to` and a run the factor is 1. Who is told to
+    /// stand gets 1 with both feet down, else 1 less `standing`.
     pub(crate) fn factor(
         &self,
         command: &[f32; 3],

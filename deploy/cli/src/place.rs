@@ -20,8 +20,7 @@ impl Place {
     /// The run that is meant: a folder's path, a name in the folder of runs, or the newest.
     pub(crate) fn find(&self, run: Option<&str>) -> Result<Folder> {
         match run {
-            Some(run) if is_run(Path::new(run)) => Ok(Folder::open(Path::new(run))?),
-            Some(run) if Path::new(run).components().count() > 1 => Err(no_run(Path::new(run))),
+            Some(path) if is_path(Path::new(path)) => open(Path::new(path)),
             Some(name) => Ok(Folder::find(&self.runs_dir, name)?),
             None => self.newest(),
         }
@@ -53,22 +52,25 @@ impl Place {
     }
 }
 
-/// Something with a path separator in it that holds a configuration, or the current folder.
-fn is_run(path: &Path) -> bool {
-    (path.components().count() > 1 || path == Path::new(".")) && path.join("config.toml").is_file()
+/// Whether a folder is meant and not a run's name.
+fn is_path(given: &Path) -> bool {
+    given.components().count() > 1 || given == Path::new(".")
 }
 
-/// Says which part of a path is missing: who mistypes a folder does not mean a run's name.
-fn no_run(path: &Path) -> anyhow::Error {
+/// The run or the shipped policy in a folder.
+fn open(path: &Path) -> Result<Folder> {
+    if path.join("config.toml").is_file() {
+        return Ok(Folder::open(path)?);
+    }
     let why = if path.is_dir() {
         "has no config.toml, so it is neither a run nor a shipped policy"
     } else {
         "is not a folder"
     };
-    usage(format!(
+    Err(usage(format!(
         "{} {why}; give a run's name, or the folder of a run or of a shipped policy",
         path.display()
-    ))
+    )))
 }
 
 fn written(run: &Path) -> Option<SystemTime> {
