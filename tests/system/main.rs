@@ -22,4 +22,5 @@ mod schedule;
 mod soak;
 mod stages;
 mod study;
+mod transfer;
 mod watch;

@@ -1,25 +1,12 @@
 //! The page in a real Chromium, without a window: it draws a robot and its time runs.
 //!
-//! Where no Chromium is installed there is nothing to test with, and the tests say so.
+//! Where no Chromium is installed there is nothing to test with: see `needs`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use g1::RobotState;
 use playback::{Frame, Recording, page};
-
-/// The browser of this machine, if there is one.
-fn chromium() -> Option<PathBuf> {
-    let paths = std::env::var_os("PATH")?;
-    let names = ["chromium", "chromium-browser", "google-chrome"];
-    let found = std::env::split_paths(&paths)
-        .flat_map(|folder| names.map(|name| folder.join(name)))
-        .find(|path| path.is_file());
-    if found.is_none() {
-        eprintln!("skipped: no chromium, chromium-browser or google-chrome on the path");
-    }
-    found
-}
 
 /// Twenty seconds of walking on the spot: the knees bend in turn.
 fn recording() -> Recording {
@@ -88,7 +75,9 @@ fn pixels(path: &Path) -> (usize, Vec<u8>) {
 
 #[test]
 fn the_page_draws_a_robot_with_its_feet_below_its_head() {
-    let Some(browser) = chromium() else { return };
+    let Some(browser) = needs::browser() else {
+        return;
+    };
     let folder = tempfile::tempdir().unwrap();
     let shot = folder.path().join("shot.png");
     let option = format!("--screenshot={}", shot.display());
@@ -121,7 +110,9 @@ fn the_page_draws_a_robot_with_its_feet_below_its_head() {
 
 #[test]
 fn time_runs_by_itself_and_stands_where_the_address_says() {
-    let Some(browser) = chromium() else { return };
+    let Some(browser) = needs::browser() else {
+        return;
+    };
     let folder = tempfile::tempdir().unwrap();
     let frame = |document: &str| -> u32 {
         let (_, rest) = document

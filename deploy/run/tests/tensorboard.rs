@@ -1,7 +1,7 @@
 //! Event files read back by TensorBoard's own reader.
 //!
-//! `AMPCO_PYTHON` names a Python that has the package `tensorboard`, else `python3` is tried; where none has it there
-//! is nothing to read with, and the test says so. The format itself is tested without it, beside its code.
+//! Where no Python has the package `tensorboard` there is nothing to read with: see `needs`. The format itself is tested
+//! without it, beside its code.
 
 use std::process::Command;
 
@@ -16,21 +16,11 @@ events.Reload()
 print(json.dumps({tag: [[e.step, e.value] for e in events.Scalars(tag)] for tag in events.Tags()['scalars']}))
 ";
 
-fn python() -> Option<String> {
-    let python = std::env::var("AMPCO_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let has = Command::new(&python)
-        .args(["-c", "import tensorboard"])
-        .output()
-        .is_ok_and(|output| output.status.success());
-    if !has {
-        eprintln!("skipped: {python} has no package tensorboard; name one with AMPCO_PYTHON");
-    }
-    has.then_some(python)
-}
-
 #[test]
 fn tensorboard_shows_what_was_written_and_forgets_what_a_resume_repeats() {
-    let Some(python) = python() else { return };
+    let Some(python) = needs::python(&["tensorboard"]) else {
+        return;
+    };
     let folder = tempfile::tempdir().unwrap();
     let line = |iteration: u64, length: f64| json!({ "iteration": iteration, "episode_length": length, "phase": 1 });
     let mut first = Events::create(folder.path(), 0, 1_700_000_000.0).unwrap();
