@@ -16,8 +16,6 @@ pub struct ActorConfig {
     pub layout: RolloutLayout,
     /// Commands, rewards, ends of episodes.
     pub task: TaskConfig,
-    /// Rows of the whole group in an iteration.
-    pub rows: u64,
     /// Table I.
     pub randomization: RandomizationConfig,
     /// Frames for reference-state initialisation.
@@ -43,7 +41,6 @@ impl ActorConfig {
                 environments: fleet.environments_per_actor(),
                 steps: fleet.steps,
             },
-            rows: (fleet.environments * fleet.steps) as u64,
             task: config.checked("task", TaskConfig::validate)?,
             randomization: config.checked("randomization", RandomizationConfig::validate)?,
             starts: dataset

@@ -46,8 +46,8 @@ impl Worker {
     ) -> Result<Self> {
         let seed = mix(mix(config.seed, u64::from(index) + 1), header.version);
         let fleet = Fleet::new(
-            &config.task.at(samples(config, header)),
-            &config.randomization.at(samples(config, header)),
+            &config.task.at(header.samples as f64),
+            &config.randomization.at(header.samples as f64),
             config.starts.clone(),
             config.layout.environments,
             seed,
@@ -136,7 +136,7 @@ impl Worker {
         header: &WeightsHeader,
         flat: &[f32],
     ) -> Result<()> {
-        let samples = samples(config, header);
+        let samples = header.samples as f64;
         if config.task.curriculum.is_some() {
             self.fleet.set_task(config.task.at(samples));
         }
@@ -187,11 +187,6 @@ fn shape(header: &WeightsHeader, weights: usize) -> Result<Shape> {
     Ok(shape)
 }
 
-/// Samples of the whole group by now: iterations of full batches have made the weights.
-fn samples(config: &ActorConfig, header: &WeightsHeader) -> f64 {
-    (header.version * config.rows) as f64
-}
-
 /// One well-mixed number of two (SplitMix64's finaliser), so that neighbours share no stream.
 fn mix(seed: u64, salt: u64) -> u64 {
     let mut x = seed ^ salt.wrapping_mul(0x9E37_79B9_7F4A_7C15);
@@ -202,7 +197,71 @@ fn mix(seed: u64, salt: u64) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
+    use protocol::RolloutLayout;
+    use sim::{CurriculumConfig, RandomizationConfig, Starts, TaskConfig};
+
     use super::*;
+
+    /// A task whose kernel goes from 2 to 4, and a Table I that grows, between 1,000 and 3,000 samples.
+    fn growing() -> ActorConfig {
+        ActorConfig {
+            seed: 1,
+            layout: RolloutLayout {
+                environments: 1,
+                steps: 8,
+            },
+            task: TaskConfig {
+                kernel: 2.0,
+                curriculum: Some(CurriculumConfig {
+                    from_samples: 1e3,
+                    to_samples: 3e3,
+                    kernel: Some(4.0),
+                    ..CurriculumConfig::default()
+                }),
+                ..TaskConfig::default()
+            },
+            randomization: RandomizationConfig {
+                from_samples: 1e3,
+                to_samples: 3e3,
+                ..RandomizationConfig::default()
+            },
+            starts: Starts::default(),
+            send_patience: Duration::ZERO,
+            journal: false,
+        }
+    }
+
+    #[test]
+    fn the_clock_is_what_the_learner_has_used_however_many_actors_made_it() {
+        let config = growing();
+        let folder = tempfile::tempdir().unwrap();
+        let run = run::Folder::create(folder.path(), "clock").unwrap();
+        let shape = Shape { hidden: vec![4] };
+        let flat = vec![0.5; shape.len()];
+        let header = |version, samples| {
+            let order = WeightsOrder::Collect;
+            WeightsHeader::new(version, order, &shape.hidden, config.layout, true).after(samples)
+        };
+        let begin = |header: &WeightsHeader| {
+            Worker::begin(&config, 0, header, flat.len(), &run.checkpoints()).unwrap()
+        };
+        // Versions of two, of twenty and of two hundred rows: half of the way is gone in all of them. An actor that
+        // begins anew there is as far as one that was there before.
+        for version in [1_000, 100, 10] {
+            let mut worker = begin(&header(0, 0));
+            assert_eq!(worker.fleet.task().kernel, 2.0);
+            worker
+                .adopt(&config, &header(version, 2_000), &flat)
+                .unwrap();
+            for worker in [&worker, &begin(&header(version, 2_000))] {
+                assert_eq!(worker.fleet.task().kernel, 3.0);
+                // Half of Table I's 0.5 kg.
+                assert_eq!(worker.fleet.randomization().mass_range, [-0.25, 0.25]);
+            }
+        }
+    }
 
     #[test]
     fn neighbouring_actors_and_versions_get_seeds_of_their_own() {

@@ -168,7 +168,8 @@ impl Lines {
             &config.learning.policy.hidden,
             terms.layout,
             terms.lockstep,
-        );
+        )
+        .after(state.samples());
         self.weights
             .broadcast(header, state.learning.policy_flat())
             .with_context(|| format!("broadcasting policy version {}", state.iteration))

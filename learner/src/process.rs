@@ -171,7 +171,7 @@ impl Loop {
                 error!(iteration = state.iteration, %problem, "update refused; the last good weights stay");
                 lines.log(&Refused {
                     iteration: state.iteration,
-                    samples: state.samples,
+                    samples: state.samples(),
                     fault: problem.to_string(),
                 });
                 Ok(())
@@ -192,7 +192,7 @@ impl Loop {
         let gathered = &span.gathered;
         Record {
             iteration: state.iteration,
-            samples: state.samples,
+            samples: state.samples(),
             phase: guide.directive.map_or(1, |directive| directive.phase),
             task_weight: 1.0 - report.style_weight,
             learning: record::figures(report),

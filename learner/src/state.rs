@@ -32,8 +32,6 @@ pub(crate) struct State {
     pub(crate) learning: Learning,
     /// Iterations done; also the version of the weights.
     pub(crate) iteration: u64,
-    /// Transitions gathered since the run's first start.
-    pub(crate) samples: u64,
     /// Seconds of learning before this start.
     pub(crate) seconds_before: f64,
     /// How the last iteration was paid, to be reported again after a resume.
@@ -79,7 +77,6 @@ pub(crate) struct StoredReport {
 
 #[derive(Serialize, Deserialize)]
 struct Shell {
-    samples: u64,
     seconds: f64,
     last_report: Option<StoredReport>,
     remembered: Option<Remembered>,
@@ -96,7 +93,6 @@ impl State {
         let mut state = Self {
             learning,
             iteration: 0,
-            samples: 0,
             seconds_before: 0.0,
             last_report: None,
             remembered: None,
@@ -159,7 +155,6 @@ impl State {
             .with_context(|| format!("reading `{LEARNING}`"))?;
         self.iteration = checkpoint.iteration;
         self.saved = Some(checkpoint.iteration);
-        self.samples = shell.samples;
         self.seconds_before = shell.seconds;
         self.last_report = shell.last_report;
         self.remembered = shell.remembered;
@@ -176,7 +171,6 @@ impl State {
         guide: &Guide,
     ) -> Result<IterationReport, LearningError> {
         self.iteration += 1;
-        self.samples += batch.rows() as u64;
         let generator = &mut self.generator;
         let judge = &config.learning.discriminator;
         let mut experts = |rows: &mut [f32]| {
@@ -206,6 +200,12 @@ impl State {
         report
     }
 
+    /// Samples learnt from since the run's first start: the run's one clock. A batch that was refused does not
+    /// count.
+    pub(crate) fn samples(&self) -> u64 {
+        self.learning.samples()
+    }
+
     /// The newest iteration that the scheduler was told of; 0 before the first.
     pub(crate) fn reported(&self) -> u64 {
         self.last_report.map_or(0, |report| report.iteration)
@@ -225,7 +225,6 @@ impl State {
             return Ok(());
         }
         let shell = Shell {
-            samples: self.samples,
             seconds,
             last_report: self.last_report,
             remembered: self.remembered,

@@ -41,6 +41,9 @@ pub struct WeightsHeader {
     pub learner: u64,
     /// Version of the weights: iterations done.
     pub version: u64,
+    /// Samples that the learner has used, those of all actors of all iterations: the run's one clock, by
+    /// which everything that changes over a run is read. Set with [`Self::after`].
+    pub samples: u64,
     /// A [`WeightsOrder`] as a number; read it with [`Self::order`].
     pub order: u32,
     /// How many entries of `hidden` count.
@@ -81,6 +84,7 @@ impl WeightsHeader {
         Self {
             learner: 0,
             version,
+            samples: 0,
             order: order as u32,
             layers: hidden.len() as u32,
             hidden: widths,
@@ -89,6 +93,12 @@ impl WeightsHeader {
             lockstep: u32::from(lockstep),
             reserved: 0,
         }
+    }
+
+    /// With the run's clock at `samples`.
+    #[must_use]
+    pub fn after(self, samples: u64) -> Self {
+        Self { samples, ..self }
     }
 
     /// What to do; `None` for a number that this version does not know.
@@ -226,8 +236,9 @@ mod tests {
     #[test]
     fn a_header_says_back_what_it_was_made_of() {
         let order = WeightsOrder::RestoreThenCollect;
-        let header = WeightsHeader::new(9, order, &[256, 128, 64], LAYOUT, true);
+        let header = WeightsHeader::new(9, order, &[256, 128, 64], LAYOUT, true).after(4_608);
         assert_eq!(header.order(), Some(order));
+        assert_eq!((header.version, header.samples), (9, 4_608));
         assert_eq!(header.hidden(), [256, 128, 64]);
         assert_eq!(header.layout(), LAYOUT);
         assert!(header.is_lockstep());

@@ -2,6 +2,7 @@
 
 use std::process::Command;
 
+use protocol::{Domain, Node, Shutdown, WeightsSubscriber};
 use rustix::process::Signal;
 use serde_json::Value;
 
@@ -58,6 +59,7 @@ fn breathe(mode: &str, most: u32) -> Vec<Value> {
     );
     // A batch of 64 rollouts of 8 steps of a robot is under a megabyte; the rest is its learning.
     let grown = own_memory(learner).saturating_sub(before);
+    assert_clock(&runs, "elastic");
     assert!(grown < 64 << 20, "the learner grew by {grown} bytes");
 
     for guest in &guests {
@@ -73,6 +75,27 @@ fn breathe(mode: &str, most: u32) -> Vec<Value> {
     group.signal(Signal::TERM);
     assert!(group.end().success(), "{}", group.stderr.text());
     metrics(&runs.run("elastic"))
+}
+
+/// The clock that weights carry is the count of the metrics, guests' samples included: what follows the samples goes at
+/// one pace in learner and actors.
+fn assert_clock(runs: &Runs, name: &str) {
+    let domain = Domain::for_run(&runs.run(name)).expect("a domain");
+    let node = Node::join(&domain, "monitor", &Shutdown::manual()).expect("joined");
+    let weights = WeightsSubscriber::new(&node).expect("a place");
+    let (version, samples) = until("weights", || {
+        let newest = weights.newest().expect("readable")?;
+        Some((newest.header().version, newest.header().samples))
+    });
+    let lines = metrics(&runs.run(name));
+    let of_version = |line: &&Value| line["iteration"].as_u64() == Some(version);
+    let line = lines
+        .iter()
+        .find(of_version)
+        .expect("logged before it was sent");
+    assert_eq!(line["samples"].as_u64(), Some(samples), "{line}");
+    // 8 rows an iteration is what the group was started for.
+    assert!(samples > 8 * version, "{line}");
 }
 
 /// Rows follow the actors, and no iteration waited for one that was gone longer than its deadline of 5 s

@@ -80,8 +80,16 @@ const PATIENT: [&str; 4] = [
 #[test]
 fn stopping_and_resuming_changes_no_bit() {
     let runs = Runs::new();
+    // A task that grows through all 8 iterations of 128 samples: its clock goes on where it stopped.
+    let growing = [
+        "--set",
+        "task.curriculum.kernel=8",
+        "--set",
+        "task.curriculum.to_samples=1024",
+    ];
     let train = |name: &str, iterations: &str| {
-        let arguments = [&["--actors", "2", "--iterations", iterations], &PATIENT[..]].concat();
+        let arguments = ["--actors", "2", "--iterations", iterations];
+        let arguments = [&arguments[..], &PATIENT[..], &growing[..]].concat();
         let mut group = runs.train(name, &arguments);
         assert!(group.end().success(), "{}", group.stderr.text());
     };

@@ -151,6 +151,16 @@ impl Fleet {
         self.environments[environment].command()
     }
 
+    /// The task as it counts now.
+    pub fn task(&self) -> &TaskConfig {
+        &self.setting.task
+    }
+
+    /// Table I as it counts now.
+    pub fn randomization(&self) -> &RandomizationConfig {
+        &self.setting.table.rows
+    }
+
     /// Goes on with another task of the same physics: its rewards and ends count from the next step,
     /// its commands and starts whenever they are drawn next.
     pub fn set_task(&mut self, task: TaskConfig) {
