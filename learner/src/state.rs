@@ -54,7 +54,7 @@ struct Earned {
 impl Earned {
     fn add(&mut self, report: &IterationReport) {
         self.reward += report.task_mean * report.rows as f64;
-        self.episodes += report.falls + report.time_outs;
+        self.episodes += report.terminations.total();
     }
 
     /// Mean sum of task rewards (Eq. 14) of an episode; `None` before one has ended.

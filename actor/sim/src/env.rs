@@ -11,12 +11,13 @@ use crate::randomization::Table;
 use crate::stance::{Foot, Footing};
 use crate::start::{self, Starts};
 use crate::stray::Astray;
-use crate::task::{self, End, TaskConfig};
+use crate::task::{self, TaskConfig};
 use g1::links::{LEFT_FOOT, RIGHT_FOOT};
 use g1::{JOINTS, OBSERVATION, RobotState, kinematics, observation};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
+use vocabulary::Cause;
 
 /// What all environments of a fleet have in common.
 pub(crate) struct Setting {
@@ -51,9 +52,8 @@ pub(crate) struct Outcome {
     pub(crate) energy: f32,
     /// Vertical force on the left and the right sole, mean over the step, N.
     pub(crate) foot_forces: [f32; 2],
-    pub(crate) end: End,
-    /// Whether the step broke: its action or its result was not finite.
-    pub(crate) faulty: bool,
+    /// Why the episode ended with the step; none if it goes on.
+    pub(crate) end: Option<Cause>,
 }
 
 /// An episode. Everything that its future depends on is in here, the robot in its engine aside.
@@ -162,12 +162,14 @@ impl Environment {
             .stray
             .as_ref()
             .is_some_and(|rule| self.astray.step(rule, &self.command, &self.state));
-        let end = if setting.task.has_fallen(&self.state) || strayed {
-            End::Fall
+        let end = if setting.task.has_fallen(&self.state) {
+            Some(Cause::Fall)
+        } else if strayed {
+            Some(Cause::Stray)
         } else if self.age >= setting.task.episode_steps {
-            End::Timeout
+            Some(Cause::TimeOut)
         } else {
-            End::Running
+            None
         };
         let (energy, foot_forces) = bodies.work_and_forces(index);
         self.feet.step(foot_forces);
@@ -182,7 +184,6 @@ impl Environment {
             energy,
             foot_forces,
             end,
-            faulty: false,
         }
     }
 
@@ -192,9 +193,9 @@ impl Environment {
         setting: &Setting,
         bodies: &mut Bodies,
         index: usize,
-        end: End,
+        end: Option<Cause>,
     ) {
-        if end != End::Running {
+        if end.is_some() {
             self.reset(setting, bodies, index);
         } else if count_down(&mut self.command_in) {
             self.command = setting.task.command.draw(&mut self.random);
@@ -230,15 +231,14 @@ impl Environment {
         self.command_in = None;
     }
 
-    /// A step that cannot be used counts as a fall in the last sound state and pays nothing.
+    /// A step that cannot be used ends the episode in the last sound state and pays nothing.
     pub(crate) fn broken(&self) -> Outcome {
         Outcome {
             task_reward: 0.0,
             tracking_error: task::tracking_error(&self.command, &self.state),
             energy: 0.0,
             foot_forces: [0.0; 2],
-            end: End::Fall,
-            faulty: true,
+            end: Some(Cause::Fault),
         }
     }
 }

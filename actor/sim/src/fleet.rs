@@ -16,9 +16,10 @@ use crate::kind::Pools;
 use crate::physics::{Bodies, Exertion};
 use crate::randomization::{RandomizationConfig, Table};
 use crate::start::Starts;
-use crate::task::{End, TaskConfig};
+use crate::task::TaskConfig;
 use g1::{ACTION, FEATURES, OBSERVATION, RobotState, observation};
 use nalgebra::Vector3;
+use vocabulary::{Cause, RUNNING};
 
 /// Environments stepped together. Same seed, same bits: an environment's future depends on the
 /// seed, its index and its actions only.
@@ -249,24 +250,25 @@ impl Fleet {
             } else {
                 environment.broken()
             };
-            self.faults += u64::from(outcome.faulty);
+            let faulty = outcome.end == Some(Cause::Fault);
+            self.faults += u64::from(faulty);
             let last = &mut self.last[i];
-            last.whole = !outcome.faulty;
-            last.ended = outcome.end != End::Running;
+            last.whole = !faulty;
+            last.ended = outcome.end.is_some();
             if last.ended {
                 last.end = *environment.state();
             }
             out.task_rewards[i] = outcome.task_reward;
             out.energies[i] = outcome.energy;
             out.tracking_errors[i] = outcome.tracking_error;
-            out.ends[i] = outcome.end.code();
+            out.ends[i] = outcome.end.map_or(RUNNING, Cause::code);
             out.episode_steps[i] = environment.steps() as f32;
             out.foot_forces[2 * i..][..2].copy_from_slice(&outcome.foot_forces);
             observation::features(
                 environment.state(),
                 &mut out.next_features[i * FEATURES..][..FEATURES],
             );
-            if outcome.end == End::Timeout {
+            if outcome.end == Some(Cause::TimeOut) {
                 // Seen before the reset: the value of a timed-out episode is that of its own end.
                 environment.observe(
                     self.setting.table(i),
@@ -279,7 +281,7 @@ impl Fleet {
                 &mut self.observations.as_chunks_mut().0[i],
             );
             let features = &mut self.features[i * FEATURES..][..FEATURES];
-            if outcome.end == End::Running {
+            if outcome.end.is_none() {
                 features.copy_from_slice(&out.next_features[i * FEATURES..][..FEATURES]);
             } else {
                 observation::features(environment.state(), features);

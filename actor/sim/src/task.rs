@@ -154,27 +154,5 @@ pub fn upright(state: &RobotState) -> f32 {
     (-state.projected_gravity().z).max(0.0)
 }
 
-/// How a step left its episode.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
-    /// It goes on.
-    Running,
-    /// A fall (or a state that could not be used, or straying from the command).
-    Fall,
-    /// The time was up.
-    Timeout,
-}
-
-impl End {
-    /// As written into a rollout: 0, 1, 2.
-    pub fn code(self) -> f32 {
-        match self {
-            Self::Running => 0.0,
-            Self::Fall => 1.0,
-            Self::Timeout => 2.0,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests;

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use serde::Deserialize;
 use serde_json::Value;
+use vocabulary::Cause;
 
 /// What is shown of one line of `metrics.jsonl`; whatever a line does not have is not shown.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -126,6 +127,16 @@ impl Figures {
         }
         line
     }
+}
+
+/// How the episodes of an iteration ended, by cause; `None` where a line does not say.
+pub(crate) fn ends(line: &Value) -> Option<String> {
+    let count = |cause: Cause| {
+        let count = line[format!("termination/{}", cause.name())].as_u64()?;
+        Some(format!("{} {count}", cause.name().replace('_', "-")))
+    };
+    let counts: Option<Vec<String>> = Cause::ALL.into_iter().map(count).collect();
+    Some(format!("episodes ended: {}", counts?.join(", ")))
 }
 
 /// The newest figures and the pace of the last iterations.

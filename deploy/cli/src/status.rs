@@ -11,7 +11,7 @@ use clap::Args;
 use run::{Folder, RunConfig, metrics};
 use serde_json::{Value, json};
 
-use crate::figures::{Figures, Outlook, count};
+use crate::figures::{self, Figures, Outlook, count};
 use crate::place::Place;
 
 /// Show how a run is going: its newest figures, who is alive, its checkpoints
@@ -103,6 +103,7 @@ fn describe(folder: &Folder, status: &Value) -> Result<String> {
         }),
         None => "no iteration yet".to_owned(),
     });
+    lines.extend(figures::ends(&status["metrics"]));
     let timing = Figures::read(&status["metrics"]).and_then(|figures| figures.timing.split());
     lines.extend(timing.map(|split| format!("time: {split}")));
     let processes = status["processes"].as_object().into_iter().flatten();
@@ -137,8 +138,8 @@ mod tests {
                 .contains("no iteration yet")
         );
 
-        let record =
-            json!({ "iteration": 7, "samples": 70, "phase": 1, "gait": "walk", "timing": {} });
+        let record = json!({ "iteration": 7, "samples": 70, "phase": 1, "gait": "walk", "timing": {}, "termination/fall": 2,
+            "termination/time_out": 1, "termination/stray": 9, "termination/fault": 0 });
         run::Metrics::open(&folder.metrics_path())
             .unwrap()
             .append(&record)
@@ -163,5 +164,9 @@ mod tests {
             "{words}"
         );
         assert!(words.contains("1 checkpoint, the newest"), "{words}");
+        assert!(
+            words.contains("episodes ended: fall 2, time-out 1, stray 9, fault 0"),
+            "{words}"
+        );
     }
 }

@@ -4,6 +4,7 @@
 //! reused, so that an iteration allocates nothing here.
 
 use crate::{ACTION, FEATURES, LearningError, OBSERVATION};
+use vocabulary::Cause;
 
 /// One rollout's size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,13 +21,6 @@ impl Segment {
         self.steps * self.environments
     }
 }
-
-/// A value of [`Batch::ends`]: the episode goes on.
-pub const RUNNING: f32 = 0.0;
-/// A value of [`Batch::ends`]: the episode ended with a fall; nothing comes after it.
-pub const FALL: f32 = 1.0;
-/// A value of [`Batch::ends`]: the episode was cut for its length; the robot could have gone on.
-pub const TIME_OUT: f32 = 2.0;
 
 macro_rules! fields {
     ($($(#[$doc:meta])* $name:ident: $of:ident * $columns:expr;)*) => {
@@ -115,7 +109,7 @@ fields! {
     energies: row * 1;
     /// Squared planar velocity error, m²/s², `[row]`.
     tracking_errors: row * 1;
-    /// [`RUNNING`], [`FALL`] or [`TIME_OUT`], `[row]`.
+    /// [`vocabulary::RUNNING`], or why the episode ended ([`Cause::code`]), `[row]`.
     ends: row * 1;
     /// Steps done in the episode, this one included, `[row]`.
     episode_steps: row * 1;
@@ -187,7 +181,7 @@ impl Batch {
         (0..self.segments.len()).flat_map(|index| {
             let (rows, robots) = self.place(index);
             let start = rows.start;
-            rows.filter(|row| self.ends[*row] == TIME_OUT)
+            rows.filter(|row| self.ends[*row] == Cause::TimeOut.code())
                 .map(move |row| (row, robots.start + (row - start) % robots.len()))
         })
     }

@@ -1,7 +1,7 @@
 //! Generalised advantage estimation over one rollout (Schulman et al. 2016).
 
 use crate::Segment;
-use crate::batch::{FALL, RUNNING, TIME_OUT};
+use vocabulary::{Cause, RUNNING};
 
 /// What advantages follow from; slices of one rollout, `[step][environment]` or `[environment]`.
 #[derive(Clone, Copy, Debug)]
@@ -20,8 +20,8 @@ pub struct Returns<'a> {
 
 /// Writes  A_t = δ_t + γλ·A_{t+1},  δ_t = r_t + γ·V(o_{t+1}) − V(o_t),  for each row.
 ///
-/// After a fall nothing follows: V(o_{t+1}) = 0. A time-out cuts an episode that could have gone on: V of its own last
-/// observation. Across either end no advantage is carried.
+/// A time-out cuts an episode that could have gone on: V of its own last observation follows. After any other end, a fall,
+/// straying or a fault, nothing does: V(o_{t+1}) = 0. Across no end is an advantage carried.
 ///
 /// # Panics
 /// If a slice does not fit the rollout.
@@ -34,12 +34,9 @@ pub fn advantages(segment: Segment, from: Returns<'_>, gamma: f32, lambda: f32, 
         for step in (0..segment.steps).rev() {
             let row = step * robots + robot;
             let end = from.ends[row];
-            if end == FALL {
-                next_value = 0.0;
-            } else if end == TIME_OUT {
-                next_value = from.timeout_values[robot];
-            }
             if end != RUNNING {
+                let cut = end == Cause::TimeOut.code();
+                next_value = if cut { from.timeout_values[robot] } else { 0.0 };
                 next_advantage = 0.0;
             }
             let delta = from.rewards[row] + gamma * next_value - from.values[row];
@@ -70,7 +67,17 @@ mod tests {
             Returns {
                 rewards: &[1.0; 9],
                 values: &[2.0, 2.0, 2.0, 4.0, 4.0, 4.0, 6.0, 6.0, 6.0],
-                ends: &[0.0, 0.0, 0.0, 0.0, FALL, TIME_OUT, 0.0, 0.0, 0.0],
+                ends: &[
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    Cause::Fall.code(),
+                    Cause::TimeOut.code(),
+                    0.0,
+                    0.0,
+                    0.0,
+                ],
                 last_values: &[8.0; 3],
                 timeout_values: &[f32::NAN, f32::NAN, 10.0],
             },
@@ -79,6 +86,30 @@ mod tests {
             &mut out,
         );
         assert_eq!(out, [0.9375, 0.25, 1.5, -0.25, -3.0, 2.0, -1.0, -1.0, -1.0]);
+    }
+
+    #[test]
+    fn nothing_follows_an_end_that_the_robot_or_the_physics_caused() {
+        // One environment, two steps, γ = λ = ½, rewards 1, values 2 and 4: an end at the first step leaves
+        // δ₀ = 1 + 0 − 2 = −1 = A₀, whatever the cause. A time-out with value 10 leaves 1 + 5 − 2 = 4.
+        let first = |cause: Cause| {
+            let segment = Segment {
+                steps: 2,
+                environments: 1,
+            };
+            let from = Returns {
+                rewards: &[1.0; 2],
+                values: &[2.0, 4.0],
+                ends: &[cause.code(), RUNNING],
+                last_values: &[8.0],
+                timeout_values: &[10.0],
+            };
+            let mut out = [0.0; 2];
+            advantages(segment, from, 0.5, 0.5, &mut out);
+            out[0]
+        };
+        let firsts = [Cause::Fall, Cause::Stray, Cause::Fault, Cause::TimeOut].map(first);
+        assert_eq!(firsts, [-1.0, -1.0, -1.0, 4.0]);
     }
 
     #[test]

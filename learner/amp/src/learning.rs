@@ -2,7 +2,7 @@
 
 mod stages;
 
-use crate::batch::{Batch, FALL, TIME_OUT};
+use crate::batch::Batch;
 use crate::config::LearningConfig;
 use crate::discrimination::Discriminator;
 use crate::error::Fault;
@@ -17,6 +17,7 @@ use networks::{Normalizer, snapshot};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use stages::Scratch;
+use vocabulary::{Counts, RUNNING};
 
 /// Seconds since any fixed moment.
 pub type Clock = fn() -> f64;
@@ -196,7 +197,6 @@ impl Learning {
         let discriminator = self.discriminate(batch, experts)?;
         let discriminated = (self.clock)();
         self.take_in(batch);
-        let ends = Ends::of(batch);
         Ok(IterationReport {
             iteration: self.core.iteration,
             samples: self.core.samples,
@@ -208,9 +208,8 @@ impl Learning {
             task_mean: task[0],
             reward_mean,
             style_weight,
-            episode_length: ends.mean_length,
-            falls: ends.falls,
-            time_outs: ends.time_outs,
+            episode_length: episode_length(batch),
+            terminations: Counts::of(&batch.ends),
             rmse: moments(&batch.tracking_errors)[0].max(0.0).sqrt(),
             energy_j: 1000.0 * moments(&batch.energies)[0],
             surrogate: ppo.surrogate,
@@ -239,31 +238,14 @@ impl Learning {
     }
 }
 
-/// How episodes of a batch ended.
-struct Ends {
-    mean_length: Option<f64>,
-    falls: u64,
-    time_outs: u64,
-}
-
-impl Ends {
-    fn of(batch: &Batch) -> Self {
-        let count = |end| batch.ends.iter().filter(|e| **e == end).count() as u64;
-        let (falls, time_outs) = (count(FALL), count(TIME_OUT));
-        let steps: f64 = batch
-            .ends
-            .iter()
-            .zip(&batch.episode_steps)
-            .filter(|(end, _)| **end == FALL || **end == TIME_OUT)
-            .map(|(_, steps)| f64::from(*steps))
-            .sum();
-        let ended = falls + time_outs;
-        Self {
-            mean_length: (ended > 0).then(|| steps / ended as f64),
-            falls,
-            time_outs,
-        }
-    }
+/// Mean length in steps of the episodes that ended in a batch.
+fn episode_length(batch: &Batch) -> Option<f64> {
+    let rows = batch.ends.iter().zip(&batch.episode_steps);
+    let ended = rows.filter(|(end, _)| **end != RUNNING);
+    let (steps, count) = ended.fold((0.0, 0.0), |(steps, count), (_, more)| {
+        (steps + f64::from(*more), count + 1.0)
+    });
+    (count > 0.0).then(|| steps / count)
 }
 
 #[cfg(test)]

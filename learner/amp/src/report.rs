@@ -1,6 +1,8 @@
 //! What an iteration tells the log.
 
 use serde::Serialize;
+use serde::ser::{SerializeMap, Serializer};
+use vocabulary::{Cause, Counts};
 
 /// Figures of one iteration. All but [`Self::seconds`] are the same for the same inputs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -29,10 +31,9 @@ pub struct IterationReport {
 
     /// Mean length in steps of the episodes that ended in this batch; none if none did.
     pub episode_length: Option<f64>,
-    /// Episodes that ended with a fall.
-    pub falls: u64,
-    /// Episodes that were cut for their length.
-    pub time_outs: u64,
+    /// Episodes that ended, by cause: `termination/fall` and so on.
+    #[serde(flatten, serialize_with = "by_cause")]
+    pub terminations: Counts,
     /// Root of the mean squared planar velocity error, m/s.
     pub rmse: f64,
     /// Positive mechanical work of one robot in 1,000 steps, J; with exploration noise about twice that without.
@@ -87,6 +88,15 @@ pub struct Seconds {
     pub discriminator: f64,
     /// All of it.
     pub total: f64,
+}
+
+/// A key for each cause, in a group of their own.
+fn by_cause<S: Serializer>(counts: &Counts, serializer: S) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(None)?;
+    for cause in Cause::ALL {
+        map.serialize_entry(&format!("termination/{}", cause.name()), &counts.by(cause))?;
+    }
+    map.end()
 }
 
 /// Mean, standard deviation, least and largest of numbers; zeros of none.

@@ -4,6 +4,7 @@
 //! of named blocks (structure of arrays); within a block the order is [step][environment][number].
 
 use g1::{ACTION, FEATURES, OBSERVATION};
+use vocabulary::Cause;
 
 /// Sizes of a rollout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -137,7 +138,7 @@ blocks! {
         energies: 1,
         /// Squared planar velocity error in the heading frame, m²/s².
         tracking_errors: 1,
-        /// 0 the episode goes on, 1 it ended by a fall, 2 by time-out.
+        /// 0 the episode goes on, else why it ended: [`Cause::code`].
         ends: 1,
         /// Steps done in the episode, this one included.
         episode_steps: 1,
@@ -177,7 +178,7 @@ impl RolloutView<'_> {
             Some(Flaw { field, row, value })
         };
         self.not_finite()
-            .or_else(|| named("ends", self.ends, |end| ![0.0, 1.0, 2.0].contains(&end)))
+            .or_else(|| named("ends", self.ends, |end| Cause::of(end).is_err()))
             .or_else(|| named("episode_steps", self.episode_steps, |steps| steps < 0.0))
             .or_else(|| self.unsound_time_out())
     }
@@ -185,8 +186,9 @@ impl RolloutView<'_> {
     /// Time-out observations mean something where an episode timed out.
     fn unsound_time_out(&self) -> Option<Flaw> {
         let environments = self.layout.environments;
-        let timed_out = self.ends.iter().enumerate().filter(|(_, end)| **end == 2.0);
-        timed_out
+        let time_out = Cause::TimeOut.code();
+        let ends = self.ends.iter().enumerate();
+        ends.filter(|(_, end)| **end == time_out)
             .map(|(row, _)| row % environments)
             .find_map(|row| {
                 let seen = &self.timeout_observations[row * OBSERVATION..][..OBSERVATION];

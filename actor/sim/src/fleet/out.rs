@@ -10,7 +10,7 @@ pub struct StepOut<'a> {
     pub energies: &'a mut [f32],
     /// Squared velocity error ‖v* − v‖², m²/s², N.
     pub tracking_errors: &'a mut [f32],
-    /// 0 running, 1 fall, 2 time-out, N.
+    /// 0 where the episode goes on, else why it ended ([`vocabulary::Cause::code`]), N.
     pub ends: &'a mut [f32],
     /// Steps done in the episode, this one included, N.
     pub episode_steps: &'a mut [f32],

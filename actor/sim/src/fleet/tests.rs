@@ -13,6 +13,7 @@ use crate::model::Variation;
 use crate::physics::Physics;
 use crate::rows::StepRows;
 use crate::start::StartConfig;
+use crate::stray::StrayConfig;
 use g1::JOINTS;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;

@@ -7,7 +7,6 @@
 use std::time::Instant;
 
 use amp::OBSERVATION;
-use amp::batch::TIME_OUT;
 use amp::discrimination::Discriminator;
 use amp::ppo::{Ppo, Rows};
 use amp::{ACTION, Batch, FeatureKind, JointGroup, Learning, LearningConfig, Mirror, Robot};
@@ -17,6 +16,7 @@ use clap::Args;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde_json::{Value, json};
+use vocabulary::Cause;
 
 use super::products;
 
@@ -272,7 +272,11 @@ fn fill(batch: &mut Batch, sigma: &[f32], rng: &mut impl Rng) {
     }
     segment.episode_steps.fill(100.0);
     for (i, end) in segment.ends.iter_mut().enumerate() {
-        *end = if i % 500 == 499 { TIME_OUT } else { 0.0 };
+        *end = if i % 500 == 499 {
+            Cause::TimeOut.code()
+        } else {
+            0.0
+        };
     }
 }
 

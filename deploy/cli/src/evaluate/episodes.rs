@@ -6,6 +6,7 @@ use g1::joints::{LEFT_LEG, RIGHT_LEG};
 use g1::{ACTION, FEATURES, JOINTS};
 use policy::Policy;
 use sim::{Fleet, LastStep, RandomizationConfig, Starts, StepRows};
+use vocabulary::Cause;
 
 use super::judge::Judge;
 use super::scenario::Scenario;
@@ -102,7 +103,11 @@ impl<'a> Walker<'a> {
             self.policy
                 .means(fleet.observations(), n, &mut block.actions);
             fleet.step(&block.actions, &mut block.rows.out());
-            for (robot, life) in robots.iter_mut().enumerate().filter(|(_, l)| !l.fallen) {
+            for (robot, life) in robots
+                .iter_mut()
+                .enumerate()
+                .filter(|(_, l)| l.ended.is_none())
+            {
                 let (before, after) = block.transition(robot);
                 self.judge.take(robot, step == 0, [before, after], &command);
                 let last = &fleet.last_step(robot);
@@ -115,14 +120,17 @@ impl<'a> Walker<'a> {
                     tally.traces[robot].samples.push(sample(last));
                 }
                 life.forces = Some(last.exertion.foot_forces);
-                life.fallen = block.rows.ends[robot] == 1.0;
+                life.ended = Cause::of(block.rows.ends[robot]).unwrap_or(Some(Cause::Fault));
             }
             tell(n);
-            if robots.iter().all(|robot| robot.fallen) {
+            if robots.iter().all(|robot| robot.ended.is_some()) {
                 break;
             }
         }
-        tally.fallen = robots.iter().filter(|robot| robot.fallen).count();
+        for robot in &robots {
+            // Whose episode nothing ended has had all its time.
+            tally.ends.add(robot.ended.unwrap_or(Cause::TimeOut));
+        }
         tally.style = self.judge.sum();
         if !conditions.traced {
             tally.traces.clear();
@@ -161,7 +169,7 @@ impl<'a> Walker<'a> {
 /// What is remembered of a robot from step to step.
 #[derive(Clone, Copy, Debug, Default)]
 struct Robot {
-    fallen: bool,
+    ended: Option<Cause>,
     forces: Option<[f32; 2]>,
 }
 

@@ -161,6 +161,7 @@ fn capitalised(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vocabulary::Counts;
 
     fn report() -> Report {
         let row = |name: &str, condition: &str| Row {
@@ -174,7 +175,7 @@ mod tests {
             reference: None,
             outcome: Tally {
                 episodes: 4,
-                fallen: 1,
+                ends: Counts::of(&[1.0, 2.0, 2.0, 2.0]),
                 steps: 100.0,
                 squared_error: 4.0,
                 ..Tally::default()
@@ -213,6 +214,11 @@ mod tests {
         let json = std::fs::read(inside.join("report.json")).unwrap();
         let json: Value = serde_json::from_slice(&json).unwrap();
         assert_eq!(json["scenarios"][0]["survival"], 0.75);
+        assert_eq!(
+            json["scenarios"][0]["ends"],
+            serde_json::json!({ "fall": 1, "time_out": 3, "stray": 0, "fault": 0 })
+        );
+        assert!(markdown.contains("| 1 fall |"), "{markdown}");
         assert_eq!(json["scenarios"][2]["condition"], "pushed");
     }
 

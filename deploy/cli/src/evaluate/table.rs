@@ -1,6 +1,7 @@
 //! The columns of an evaluation: one list, for the terminal and for Markdown.
 
 use super::report::Row;
+use vocabulary::Cause;
 
 /// A column: its heading, its unit, and how a row fills it.
 pub(super) struct Column {
@@ -14,7 +15,7 @@ const fn column(name: &'static str, unit: &'static str, value: fn(&Row) -> Strin
 }
 
 /// From left to right.
-pub(super) const COLUMNS: [Column; 19] = [
+pub(super) const COLUMNS: [Column; 20] = [
     column("scenario", "", |row| row.name.clone()),
     column("survival", "%", |row| {
         digits(100.0 * row.outcome.survival, 1)
@@ -43,12 +44,13 @@ pub(super) const COLUMNS: [Column; 19] = [
     column("speed", "%", |row| {
         digits(100.0 * f64::from(row.outcome.joint_speed_peak), 0)
     }),
+    column("ended", "", ended),
     column("gait", "", |row| row.outcome.gait.clone()),
 ];
 
 /// What the columns mean, for whoever reads a report.
 pub(super) const LEGEND: &str = "\
-- survival: episodes without a fall. Everything else is measured until the fall.
+- survival: episodes that had all their time. Everything else is measured until their end.
 - rmse: root mean squared planar velocity error (III-F); settled: without the first two seconds after a start
   or a new command; lateral: its sideways part; yaw: of the yaw rate.
 - energy: positive mechanical work of a robot per 1,000 control steps (20 s), without exploration noise.
@@ -58,7 +60,23 @@ pub(super) const LEGEND: &str = "\
 - duty: share of time that a foot is down; flight: share of time that none is.
 - clear: mean height of a foot's sole in swing; slip: way of a foot on the ground per stride.
 - symmetry: 1 both feet step alike, 0 one foot always leads.
-- torque, speed: greatest share of any joint's effort limit and velocity limit.";
+- torque, speed: greatest share of any joint's effort limit and velocity limit.
+- ended: how many episodes ended before their time, and why: a fall, straying from the command, a fault of the physics.";
+
+/// Episodes that ended before their time, by cause.
+fn ended(row: &Row) -> String {
+    let early = [Cause::Fall, Cause::Stray, Cause::Fault];
+    let counts = early.map(|cause| (row.outcome.ends.by(cause), cause.name()));
+    let some = counts.into_iter().filter(|(count, _)| *count > 0);
+    let words: Vec<String> = some
+        .map(|(count, name)| format!("{count} {name}"))
+        .collect();
+    if words.is_empty() {
+        "-".to_owned()
+    } else {
+        words.join(", ")
+    }
+}
 
 fn digits(number: f64, digits: usize) -> String {
     format!("{number:.digits$}")

@@ -3,6 +3,7 @@
 use g1::JOINT_TABLE;
 use g1::gait::{Feet, Gait, MotorUse, Pace, Signs, Verdict};
 use serde::Serialize;
+use vocabulary::{Cause, Counts};
 
 /// Steps per second.
 pub(super) const CONTROL_HZ: f64 = 50.0;
@@ -14,7 +15,8 @@ pub(super) const SETTLING: u32 = 100;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tally {
     pub(super) episodes: usize,
-    pub(super) fallen: usize,
+    /// How they ended; those that had all their time, by the time-out.
+    pub(super) ends: Counts,
     pub(super) steps: f64,
     pub(super) squared_error: f64,
     /// Steps of settled robots, and the squared error in them.
@@ -54,7 +56,7 @@ pub(super) struct Sample {
 impl Tally {
     pub(super) fn merge(&mut self, other: Self) {
         self.episodes += other.episodes;
-        self.fallen += other.fallen;
+        self.ends.merge(&other.ends);
         self.steps += other.steps;
         self.squared_error += other.squared_error;
         self.settled_steps += other.settled_steps;
@@ -78,10 +80,15 @@ impl Tally {
         self.steps / self.episodes as f64 / CONTROL_HZ
     }
 
+    /// Episodes that ended before their time.
+    fn cut_short(&self) -> u64 {
+        self.ends.total() - self.ends.by(Cause::TimeOut)
+    }
+
     /// What the gait is.
     fn verdict(&self) -> Verdict {
         // Of short episodes one fall among many would make the mean a short life.
-        let most_fell = 2 * self.fallen > self.episodes;
+        let most_fell = 2 * self.cut_short() as usize > self.episodes;
         let seconds = most_fell.then(|| self.seconds_survived());
         Verdict::of(&Signs::of(&self.gait, &self.pace, seconds, CONTROL_HZ))
     }
@@ -94,7 +101,8 @@ impl Tally {
         let verdict = self.verdict();
         Outcome {
             episodes: self.episodes,
-            survival: (self.episodes - self.fallen) as f64 / self.episodes as f64,
+            survival: (self.episodes as u64 - self.cut_short()) as f64 / self.episodes as f64,
+            ends: self.ends,
             seconds_survived: self.seconds_survived(),
             rmse: root(self.squared_error),
             rmse_settled: (self.settled_steps > 0.0)
@@ -133,8 +141,10 @@ impl Tally {
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Outcome {
     pub(super) episodes: usize,
-    /// Share of episodes without a fall.
+    /// Share of episodes that had all their time.
     pub(super) survival: f64,
+    /// How many ended for each cause.
+    pub(super) ends: Counts,
     /// Mean time to the fall or to the end.
     pub(super) seconds_survived: f64,
     /// √(mean ‖v* − v‖²), planar, heading frame, m/s (III-F).
@@ -191,7 +201,7 @@ mod tests {
     fn means_are_over_steps_and_survival_over_episodes() {
         let mut tally = Tally {
             episodes: 2,
-            fallen: 1,
+            ends: Counts::of(&[1.0]),
             steps: 100.0,
             squared_error: 25.0,
             settled_steps: 50.0,
@@ -222,9 +232,9 @@ mod tests {
 
     #[test]
     fn one_fall_among_many_short_episodes_is_no_verdict() {
-        let tally = |fallen| Tally {
+        let tally = |falls| Tally {
             episodes: 16,
-            fallen,
+            ends: Counts::of(&vec![1.0; falls]),
             steps: 800.0, // one second each
             ..Tally::default()
         };

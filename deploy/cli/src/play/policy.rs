@@ -5,6 +5,7 @@ use g1::ACTION;
 use playback::{Frame, Recording};
 use sim::world::CONTROL_STEP;
 use sim::{Fleet, RandomizationConfig, Starts, StepRows};
+use vocabulary::RUNNING;
 
 use super::Play;
 use crate::evaluate::subject::Subject;
@@ -64,8 +65,8 @@ pub(super) fn record(play: &Play) -> Result<Recording> {
             break;
         }
         fleet.step(&action, &mut rows.out());
-        if rows.ends[0] == 1.0 {
-            // The robot lies: what the fleet shows now is another episode.
+        if rows.ends[0] != RUNNING {
+            // The robot lies, or its numbers broke: what the fleet shows now is another episode.
             break;
         }
         foot_forces = Some([rows.foot_forces[0], rows.foot_forces[1]]);

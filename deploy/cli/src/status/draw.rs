@@ -1,6 +1,7 @@
 //! The dashboard on the screen: four curves, then phase, weights, traffic and processes.
 
 use super::board::{Board, Curve};
+use crate::figures;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Style, Stylize};
@@ -152,12 +153,11 @@ fn now(board: &Board) -> Vec<Line<'static>> {
                 .map_or_else(|| "-".to_owned(), |version| version.to_string()),
         )),
         Line::from(format!(
-            "rmse {} m/s · energy {} J/1000 · hips {} · falls {} · time-outs {}",
+            "rmse {} m/s · energy {} J/1000 · hips {} · {}",
             figure("rmse"),
             figure("energy_j"),
             figure("hip_correlation"),
-            figure("falls"),
-            figure("time_outs"),
+            figures::ends(newest).unwrap_or_default(),
         )),
         Line::from(format!(
             "{} rollouts of {} actors · lag {} · dropped {} · stale {} · duplicated {} · waiting {} s · missed here {}",

@@ -28,8 +28,8 @@ fn time_outs_know_their_environment() {
     let mut batch = Batch::default();
     batch.resize(2, 2, 3);
     // second rollout (rows 6..12), second step (9..12), third environment
-    batch.ends[11] = TIME_OUT;
-    batch.ends[0] = FALL;
+    batch.ends[11] = Cause::TimeOut.code();
+    batch.ends[0] = Cause::Fall.code();
     assert_eq!(batch.time_outs().collect::<Vec<_>>(), [(11, 5)]);
 }
 
@@ -56,7 +56,7 @@ fn what_is_not_finite_is_named() {
     ));
     batch.resize(1, 2, 2);
     batch.features.fill(0.0);
-    batch.ends[2] = TIME_OUT;
+    batch.ends[2] = Cause::TimeOut.code();
     assert!(matches!(
         batch.check(),
         Err(LearningError::BatchNotFinite {

@@ -6,6 +6,7 @@ use super::*;
 use crate::ACTION;
 use crate::robot::tests::simple;
 use rand::RngExt;
+use vocabulary::Cause;
 
 fn config() -> LearningConfig {
     let mut config = LearningConfig::default();
@@ -54,7 +55,7 @@ fn batch(learning: &Learning, seed: u64) -> Batch {
         draw(part, 0.0, 1.0);
     }
     batch.episode_steps.fill(40.0);
-    (batch.ends[7], batch.ends[44]) = (FALL, TIME_OUT);
+    (batch.ends[7], batch.ends[44]) = (Cause::Fall.code(), Cause::TimeOut.code());
     batch.episode_steps[44] = 100.0;
     for (row, log_prob) in batch.log_probs.iter_mut().enumerate() {
         let action = &batch.actions[row * ACTION..][..ACTION];
@@ -194,7 +195,10 @@ fn the_report_counts_what_the_batch_holds() {
         )
         .expect("finite");
     assert_eq!((report.iteration, report.samples, report.rows), (1, 60, 60));
-    assert_eq!((report.falls, report.time_outs), (1, 1));
+    let told = toml::Table::try_from(&report).expect("a record");
+    let ended = ["fall", "time_out", "stray", "fault"]
+        .map(|cause| told[&format!("termination/{cause}")].as_integer());
+    assert_eq!(ended, [Some(1), Some(1), Some(0), Some(0)]);
     assert_eq!(report.episode_length, Some(70.0)); // (40 + 100) / 2
     assert_eq!(report.style_weight, 0.25);
     let mean = |x: &[f32]| x.iter().map(|x| f64::from(*x)).sum::<f64>() / 60.0;

@@ -89,7 +89,11 @@ fn numbers_that_cannot_be_are_found_and_named() {
     assert_eq!(nan, Some(("observations", 4)));
     let infinite = flaw(|view| view.task_rewards[5] = f32::NEG_INFINITY);
     assert_eq!(infinite, Some(("task_rewards", 5)));
-    assert_eq!(flaw(|view| view.ends[2] = 3.0), Some(("ends", 2)));
+    assert_eq!(flaw(|view| view.ends[2] = 5.0), Some(("ends", 2)));
+    assert_eq!(flaw(|view| view.ends[2] = 2.5), Some(("ends", 2)));
+    let known =
+        |view: &mut RolloutViewMut<'_>| view.ends[..4].copy_from_slice(&[1.0, 2.0, 3.0, 4.0]);
+    assert_eq!(flaw(known), None);
     let negative = flaw(|view| view.episode_steps[0] = -1.0);
     assert_eq!(negative, Some(("episode_steps", 0)));
     // Nothing timed out: these numbers mean nothing.

@@ -1,6 +1,8 @@
 //! Where episodes begin and how they end.
 
 use super::*;
+use nalgebra::UnitQuaternion;
+use std::f32::consts::FRAC_PI_3;
 
 #[test]
 fn timeouts_are_staggered_and_then_a_full_episode_apart() {
@@ -57,6 +59,62 @@ fn limp_robots_fall_and_their_episode_ends() {
         "{height}"
     );
     assert_eq!(fall.energies[0], 0.0); // no current, no work
+}
+
+#[test]
+fn every_end_tells_its_cause() {
+    ENGINES.into_iter().for_each(tells_causes);
+}
+
+fn tells_causes(physics: Physics) {
+    // Told to walk at 1 m/s: who stands is a fifth of it off after one step of a mean over 0.1 s, and 0.05 is allowed.
+    let strict = TaskConfig {
+        physics,
+        episode_steps: 1,
+        staggered: false,
+        command: CommandConfig {
+            forward: [1.0, 1.0],
+            ..CommandConfig::default()
+        },
+        start: StartConfig {
+            reference_share: 0.0,
+            ..StartConfig::default()
+        },
+        stray: Some(StrayConfig {
+            share: 0.0,
+            least: 0.05,
+            seconds: 0.1,
+            grace: 0.0,
+            ..StrayConfig::default()
+        }),
+        ..TaskConfig::default()
+    };
+    let lenient = TaskConfig {
+        stray: None,
+        ..strict.clone()
+    };
+    let mut leaning = RobotState::standing();
+    leaning.orientation = UnitQuaternion::from_euler_angles(0.0, FRAC_PI_3, 0.0);
+    let end = |task: &TaskConfig, state: &RobotState, action: f32| {
+        let mut fleet = fleet(task, &RandomizationConfig::none(), 1, 4);
+        let _ = fleet.bodies.begin(0, &Variation::NOMINAL, state);
+        step(&mut fleet, &[action; ACTION]).ends[0]
+    };
+    let standing = RobotState::standing();
+    // The time is up in all of these: what a robot did itself comes first, and a fall before all that follows from it.
+    for (task, state, action, cause) in [
+        (&lenient, &standing, 0.0, Cause::TimeOut),
+        (&strict, &standing, 0.0, Cause::Stray),
+        (&lenient, &leaning, 0.0, Cause::Fall),
+        (&strict, &leaning, 0.0, Cause::Fall),
+        (&strict, &standing, f32::NAN, Cause::Fault),
+    ] {
+        assert_eq!(
+            end(task, state, action),
+            cause.code(),
+            "{physics:?} {cause:?}"
+        );
+    }
 }
 
 #[test]

@@ -13,7 +13,7 @@ fn resets_what_broke(physics: Physics) {
     let mut asked = vec![0.0; 2 * ACTION];
     asked[5] = f32::NAN;
     let out = step(&mut fleet, &asked);
-    assert_eq!((out.ends[0], out.ends[1]), (1.0, 0.0));
+    assert_eq!((out.ends[0], out.ends[1]), (Cause::Fault.code(), 0.0));
     assert_eq!(fleet.faults(), 1);
     // An action large enough to overflow f32 inside the physics.
     asked[5] = 0.0;
@@ -21,7 +21,7 @@ fn resets_what_broke(physics: Physics) {
     state.joint_velocities[2] = f32::INFINITY;
     let _ = fleet.bodies.begin(1, &Variation::NOMINAL, &state);
     let broken = step(&mut fleet, &asked);
-    assert_eq!(broken.ends[1], 1.0);
+    assert_eq!(broken.ends[1], Cause::Fault.code());
     assert_eq!(fleet.faults(), 2);
     for numbers in [&out.next_features, &out.task_rewards, &out.tracking_errors]
         .into_iter()
