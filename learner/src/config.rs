@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use amp::LearningConfig;
+use amp::{IterationReport, LearningConfig};
 use ampco::ScheduleConfig;
 use anyhow::{Context, Result};
 use motion::{Dataset, MotionConfig};
@@ -18,6 +18,8 @@ pub(crate) struct LearnerConfig {
     pub(crate) learning: LearningConfig,
     pub(crate) schedule: ScheduleConfig,
     pub(crate) experts: Dataset,
+    /// Control steps of the longest possible episode.
+    pub(crate) episode_steps: f64,
 }
 
 impl LearnerConfig {
@@ -37,7 +39,19 @@ impl LearnerConfig {
             },
             schedule: config.section("scheduler")?,
             experts,
+            episode_steps: config
+                .given("task.episode_steps")
+                .and_then(|steps| steps.as_integer())
+                .context("config.toml lacks task.episode_steps; `ampco train` writes it")?
+                as f64,
         })
+    }
+
+    /// Mean length of the episodes that ended in an iteration, as a share of the longest possible.
+    pub(crate) fn episode_share(&self, report: &IterationReport) -> Option<f64> {
+        report
+            .episode_length
+            .map(|steps| steps / self.episode_steps)
     }
 
     pub(crate) fn terms(&self) -> Terms {

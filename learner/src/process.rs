@@ -195,6 +195,7 @@ impl Loop {
             samples: state.samples(),
             phase: guide.directive.map_or(1, |directive| directive.phase),
             task_weight: 1.0 - report.style_weight,
+            episode_share: self.config.episode_share(report),
             learning: record::figures(report),
             decision: DecisionFigures::of(guide, lines.is_scheduler_away()),
             gait: measures.into(),

@@ -20,6 +20,8 @@ pub(crate) struct Record {
     pub(crate) samples: u64,
     pub(crate) phase: u32,
     pub(crate) task_weight: f64,
+    /// Mean length of the episodes that ended, as a share of the longest possible.
+    pub(crate) episode_share: Option<f64>,
     #[serde(flatten)]
     pub(crate) learning: Map<String, Value>,
     #[serde(flatten)]

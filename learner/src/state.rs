@@ -73,6 +73,8 @@ pub(crate) struct StoredReport {
     style_min: f64,
     style_max: f64,
     task_mean: f64,
+    /// None ended, or it is a checkpoint of a program that did not measure it.
+    episode_share: Option<f64>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -195,6 +197,7 @@ impl State {
                 style_min: report.style_min,
                 style_max: report.style_max,
                 task_mean: report.task_mean,
+                episode_share: config.episode_share(report),
             });
         }
         report
@@ -269,6 +272,7 @@ impl StoredReport {
             style_min: self.style_min,
             style_max: self.style_max,
             task_mean: self.task_mean,
+            episode_share: self.episode_share.unwrap_or(f64::NAN),
             ..RewardReport::default()
         }
     }

@@ -40,6 +40,8 @@ pub struct RewardReport {
     pub task_mean: f64,
     /// Standard deviation of the task reward.
     pub task_std: f64,
+    /// Mean length of the episodes that ended, as a share of the longest possible; NaN where none ended.
+    pub episode_share: f64,
 }
 
 impl From<&RewardReport> for ampco::Report {
@@ -49,6 +51,7 @@ impl From<&RewardReport> for ampco::Report {
             style_mean: report.style_mean,
             style_std: report.style_std,
             task_mean: report.task_mean,
+            episode_share: Some(report.episode_share).filter(|share| !share.is_nan()),
         }
     }
 }

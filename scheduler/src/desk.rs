@@ -76,6 +76,7 @@ mod tests {
             style_mean: iteration.min(10) as f64 / 16.0,
             style_std: 0.125,
             task_mean: 0.5,
+            episode_share: Some(iteration as f64 / 100.0),
         }
     }
 
@@ -84,7 +85,7 @@ mod tests {
             let report = report(i);
             serde_json::json!({
                 "iteration": i, "style_mean": report.style_mean, "style_std": report.style_std,
-                "task_mean": report.task_mean
+                "task_mean": report.task_mean, "episode_share": report.episode_share
             })
         };
         iterations

@@ -14,6 +14,7 @@ pub(crate) struct Record {
     style_mean: Option<f64>,
     style_std: Option<f64>,
     task_mean: Option<f64>,
+    episode_share: Option<f64>,
 }
 
 impl Record {
@@ -24,6 +25,7 @@ impl Record {
             style_mean: self.style_mean.unwrap_or(f64::NAN),
             style_std: self.style_std.unwrap_or(f64::NAN),
             task_mean: self.task_mean.unwrap_or(f64::NAN),
+            episode_share: self.episode_share,
         }
     }
 }
@@ -79,6 +81,7 @@ mod tests {
             style_mean,
             style_std: 0.1 / 3.0,
             task_mean: 0.5,
+            episode_share: Some(iteration as f64 / 7.0),
         }
     }
 
@@ -88,10 +91,11 @@ mod tests {
             style_mean,
             style_std,
             task_mean,
+            episode_share,
         } = report;
         let line = serde_json::json!({
             "iteration": iteration, "episode_length": 12.5, "style_mean": style_mean, "style_std": style_std,
-            "task_mean": task_mean
+            "task_mean": task_mean, "episode_share": episode_share
         });
         format!("{line}\n")
     }
@@ -132,6 +136,23 @@ mod tests {
                 "restart at {restart}"
             );
         }
+    }
+
+    #[test]
+    fn what_arms_is_rebuilt_with_it() {
+        let waits = ScheduleConfig {
+            arm: ampco::ArmKind::EpisodesLast,
+            smoothing: 4.0,
+            ..config()
+        };
+        let mut live = Schedule::new(waits.clone()).unwrap();
+        for restart in 2..=30 {
+            live.observe(report(restart - 1)).unwrap();
+            let text: String = (1..restart).map(|i| line(report(i))).collect();
+            let rebuilt = rebuild(&waits, &records(&text), u64::MAX).unwrap();
+            assert_eq!(rebuilt.decision(restart), live.decision(restart));
+        }
+        assert!(live.decision(30).switched_at().is_some());
     }
 
     #[test]

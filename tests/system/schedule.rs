@@ -97,6 +97,7 @@ fn the_scheduler_switches_where_the_paper_says_also_across_its_own_death() {
                 style_mean: style(iteration),
                 style_std: 0.05,
                 task_mean: 0.5,
+                episode_share: Some(0.0),
             })
             .expect("finite");
         assert_eq!(

@@ -3,8 +3,12 @@
 //! Algorithm 1 as written also finds "convergence" in a reward that falls: it then never exceeds its own history. With
 //! episodes that start on the reference motion the style reward does fall at first, from what the reference earned to
 //! what the policy earns. `after_rise` waits until the smoothed reward has risen from its minimum by a share of it.
+//!
+//! It also finds convergence in a reward that pauses. A run whose robots fall after two seconds may earn the same style
+//! for millions of samples before they stay up, and more after that. `episodes_last` waits for what imitation is for:
+//! robots that stay up. Style is then judged to converge on episodes that last.
 
-use crate::ArmKind;
+use crate::{ArmKind, Report, ScheduleConfig};
 
 /// What this iteration's reward means for Algorithm 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,11 +24,12 @@ pub enum Arm {
     Armed,
 }
 
-/// Follows the smoothed reward and its minimum.
+/// Follows what arms: the smoothed reward and its minimum, or the smoothed length of episodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arming {
     kind: ArmKind,
     rise_share: f64,
+    last_share: f64,
     smoothing: f64,
     count: u64,
     smoothed: f64,
@@ -33,12 +38,13 @@ pub struct Arming {
 }
 
 impl Arming {
-    /// `rise_share` ≥ 0 of the minimum, `smoothing` ≥ 1 in iterations; the literal kind uses neither.
-    pub fn new(kind: ArmKind, rise_share: f64, smoothing: f64) -> Self {
+    /// As a checked configuration says.
+    pub fn new(config: &ScheduleConfig) -> Self {
         Self {
-            kind,
-            rise_share,
-            smoothing,
+            kind: config.arm,
+            rise_share: config.rise_share,
+            last_share: config.last_share,
+            smoothing: config.smoothing,
             count: 0,
             smoothed: 0.0,
             minimum: f64::INFINITY,
@@ -46,31 +52,46 @@ impl Arming {
         }
     }
 
-    /// Takes this iteration's mean style reward (finite) into account.
-    ///
-    /// Smoothing is exponential, s += (r̄ˢ − s)/n, where n counts up to `smoothing`: at first it is the plain mean. A new
-    /// minimum disarms, so that an early rise followed by a deeper fall waits for the rise after that fall.
-    pub fn observe(&mut self, style_mean: f64) -> Arm {
-        if self.kind == ArmKind::WindowFull {
-            return Arm::Armed;
+    /// Takes an iteration's report into account, every number of it finite.
+    pub fn observe(&mut self, report: &Report) -> Arm {
+        let ready = match self.kind {
+            ArmKind::WindowFull => return Arm::Armed,
+            ArmKind::AfterRise => self.has_risen(report.style_mean),
+            ArmKind::EpisodesLast => self.lasts(report.episode_share),
+        };
+        match (std::mem::replace(&mut self.armed, ready), ready) {
+            (_, false) => Arm::Waiting,
+            (false, true) => Arm::Begins,
+            (true, true) => Arm::Armed,
         }
-        self.count += 1;
-        self.smoothed += (style_mean - self.smoothed) / (self.count as f64).min(self.smoothing);
+    }
+
+    /// Whether the smoothed reward has risen from its minimum by the share. A new minimum disarms, so that an early rise
+    /// followed by a deeper fall waits for the rise after that fall; a fall that stays above it does not.
+    fn has_risen(&mut self, style_mean: f64) -> bool {
+        self.smooth(style_mean);
         if self.smoothed < self.minimum {
             self.minimum = self.smoothed;
-            self.armed = false;
+            // A minimum that is still the newest value has not been risen from, whatever the share.
+            return false;
         }
-        if self.armed {
-            return Arm::Armed;
-        }
-        // A minimum that is still the newest value has not been risen from, whatever the share.
-        self.armed =
+        let risen =
             self.smoothed > self.minimum && self.smoothed >= (1.0 + self.rise_share) * self.minimum;
-        if self.armed {
-            Arm::Begins
-        } else {
-            Arm::Waiting
+        self.armed || risen
+    }
+
+    /// Whether episodes last. An iteration in which none ended says nothing.
+    fn lasts(&mut self, episode_share: Option<f64>) -> bool {
+        if let Some(share) = episode_share {
+            self.smooth(share);
         }
+        self.count > 0 && self.smoothed >= self.last_share
+    }
+
+    /// s += (x − s)/n, where n counts up to `smoothing`: at first it is the plain mean.
+    fn smooth(&mut self, value: f64) {
+        self.count += 1;
+        self.smoothed += (value - self.smoothed) / (self.count as f64).min(self.smoothing);
     }
 }
 
@@ -78,20 +99,46 @@ impl Arming {
 mod tests {
     use super::*;
 
+    /// Of one kind, with the share that it asks for.
+    fn arming(kind: ArmKind, share: f64, smoothing: f64) -> Arming {
+        Arming::new(&ScheduleConfig {
+            arm: kind,
+            rise_share: share,
+            last_share: share,
+            smoothing,
+            ..ScheduleConfig::default()
+        })
+    }
+
+    fn report(style_mean: f64, episode_share: Option<f64>) -> Report {
+        Report {
+            iteration: 1,
+            style_mean,
+            style_std: 0.0,
+            task_mean: 0.0,
+            episode_share,
+        }
+    }
+
+    /// Answers to rewards.
+    fn style(arming: &mut Arming, means: &[f64]) -> Vec<Arm> {
+        let answer = |mean: &f64| arming.observe(&report(*mean, None));
+        means.iter().map(answer).collect()
+    }
+
+    use Arm::{Armed, Begins, Waiting};
+
     #[test]
     fn the_literal_kind_is_always_armed() {
-        assert_eq!(
-            Arming::new(ArmKind::WindowFull, 0.5, 1.0).observe(0.3),
-            Arm::Armed
-        );
+        let mut literal = arming(ArmKind::WindowFull, 0.5, 1.0);
+        assert_eq!(style(&mut literal, &[0.3]), [Armed]);
     }
 
     #[test]
     fn a_rise_by_the_share_arms_and_a_new_minimum_disarms() {
-        let mut arming = Arming::new(ArmKind::AfterRise, 0.5, 1.0); // no smoothing
-        let seen = [0.5, 0.4, 0.5, 0.625, 0.5, 0.25, 0.3, 0.375].map(|r| arming.observe(r));
+        let mut arming = arming(ArmKind::AfterRise, 0.5, 1.0); // no smoothing
+        let seen = style(&mut arming, &[0.5, 0.4, 0.5, 0.625, 0.5, 0.25, 0.3, 0.375]);
         // Minimum 0.4 wants 0.6: reached at 0.625, and 0.5 stays armed. Minimum 0.25 disarms and wants 0.375.
-        use Arm::{Armed, Begins, Waiting};
         assert_eq!(
             seen,
             [
@@ -102,18 +149,39 @@ mod tests {
 
     #[test]
     fn smoothing_holds_back_a_single_high_value() {
-        let mut arming = Arming::new(ArmKind::AfterRise, 0.5, 4.0);
+        let mut arming = arming(ArmKind::AfterRise, 0.5, 4.0);
         // Mean of 0.2 0.2 0.2 0.4 is 0.25 < 0.3; then 0.25 + (0.4 − 0.25)/4 = 0.2875; then + (0.4 − 0.2875)/4 = 0.3156.
-        let seen = [0.2, 0.2, 0.2, 0.4, 0.4, 0.4].map(|r| arming.observe(r));
-        assert_eq!(seen[4], Arm::Waiting);
-        assert_eq!(seen[5], Arm::Begins);
+        let seen = style(&mut arming, &[0.2, 0.2, 0.2, 0.4, 0.4, 0.4]);
+        assert_eq!(seen[4..], [Waiting, Begins]);
     }
 
     #[test]
     fn a_falling_or_constant_reward_never_arms() {
-        let mut falling = Arming::new(ArmKind::AfterRise, 0.0, 3.0);
-        assert!((0..100).all(|i| falling.observe(1.0 - 0.01 * f64::from(i)) == Arm::Waiting));
-        let mut constant = Arming::new(ArmKind::AfterRise, 0.0, 1.0);
-        assert!((0..100).all(|_| constant.observe(0.25) == Arm::Waiting));
+        let falling: Vec<f64> = (0..100).map(|i| 1.0 - 0.01 * f64::from(i)).collect();
+        let never = |smoothing, means: &[f64]| {
+            let mut arming = arming(ArmKind::AfterRise, 0.0, smoothing);
+            style(&mut arming, means).iter().all(|arm| *arm == Waiting)
+        };
+        assert!(never(3.0, &falling) && never(1.0, &[0.25; 100]));
+    }
+
+    #[test]
+    fn episodes_that_last_arm_and_robots_that_fall_again_disarm() {
+        let mut arming = arming(ArmKind::EpisodesLast, 0.8, 2.0);
+        let shares = [
+            None,
+            Some(0.4),
+            Some(0.9),
+            Some(1.0),
+            None,
+            Some(0.4),
+            Some(1.0),
+        ];
+        // Nothing yet; 0.4; (0.4 + 0.9)/2 = 0.65; + (1 − 0.65)/2 = 0.825 ≥ 0.8; none ended: as it was; 0.6125; 0.80625.
+        let seen = shares.map(|share| arming.observe(&report(0.3, share)));
+        assert_eq!(
+            seen,
+            [Waiting, Waiting, Waiting, Begins, Armed, Waiting, Begins]
+        );
     }
 }

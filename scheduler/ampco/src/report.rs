@@ -11,6 +11,8 @@ pub struct Report {
     pub style_std: f64,
     /// Mean task reward over the same transitions.
     pub task_mean: f64,
+    /// Mean length of the episodes that ended in the iteration, as a share of the longest possible; none if none ended.
+    pub episode_share: Option<f64>,
 }
 
 /// Why a report was refused. The schedule is then as it was before.
@@ -51,6 +53,7 @@ impl Report {
             ("style_mean", self.style_mean),
             ("style_std", self.style_std),
             ("task_mean", self.task_mean),
+            ("episode_share", self.episode_share.unwrap_or(0.0)),
         ] {
             if !value.is_finite() {
                 return Err(ReportError::NotFinite {

@@ -26,7 +26,7 @@ impl Schedule {
         config.validate()?;
         Ok(Self {
             phase: Phase::One,
-            arming: Arming::new(config.arm, config.rise_share, config.smoothing),
+            arming: Arming::new(&config),
             detector: Detector::new(config.window, config.percentile),
             style_ceiling: Ceiling::new(config.ceiling),
             task_ceiling: Ceiling::new(config.ceiling),
@@ -43,7 +43,7 @@ impl Schedule {
         self.newest = Some(report.iteration);
         self.style_ceiling.observe(report.style_mean);
         self.task_ceiling.observe(report.task_mean);
-        let arm = self.arming.observe(report.style_mean);
+        let arm = self.arming.observe(&report);
         if arm == Arm::Begins {
             self.detector.clear();
         }

@@ -79,6 +79,7 @@ impl SchedulerBench {
             style_mean: rng.random_range(0.2..0.4),
             style_std: 0.1,
             task_mean: 0.5,
+            episode_share: None,
         };
         // The windows are full after W + 2 reports.
         let filled = self.window as u64 + 2;
