@@ -7,6 +7,7 @@ use motion::{Dataset, MotionConfig};
 use protocol::RolloutLayout;
 use run::{FleetConfig, Folder, RunConfig};
 use sim::{RandomizationConfig, Starts, TaskConfig};
+use tracing::warn;
 
 /// The sections that an actor needs, read and checked.
 pub struct ActorConfig {
@@ -35,6 +36,13 @@ impl ActorConfig {
         let motion: MotionConfig = config.section("motion")?;
         let dataset =
             Dataset::load(&motion, folder.path()).context("loading the reference motion")?;
+        // Files may come and go while the group runs; a process that restarts then must not learn from others in silence.
+        for change in folder.motion_differences(&Dataset::files(&motion, folder.path())?)? {
+            warn!(
+                change,
+                "the reference motion is not what the run began with"
+            );
+        }
         Ok(Self {
             seed: run.seed,
             layout: RolloutLayout {

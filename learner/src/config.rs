@@ -8,6 +8,7 @@ use anyhow::{Context, Result};
 use motion::{Dataset, MotionConfig};
 use protocol::RolloutLayout;
 use run::{FleetConfig, Folder, Mode, RunConfig};
+use tracing::warn;
 
 use crate::intake::Terms;
 
@@ -20,6 +21,8 @@ pub(crate) struct LearnerConfig {
     pub(crate) experts: Dataset,
     /// Control steps of the longest possible episode.
     pub(crate) episode_steps: f64,
+    /// All of it as TOML, to be kept in checkpoints.
+    pub(crate) text: String,
 }
 
 impl LearnerConfig {
@@ -28,6 +31,13 @@ impl LearnerConfig {
         let motion: MotionConfig = config.section("motion")?;
         let experts =
             Dataset::load(&motion, folder.path()).context("loading the reference motion")?;
+        // Files may come and go while the group runs; a process that restarts then must not learn from others in silence.
+        for change in folder.motion_differences(&Dataset::files(&motion, folder.path())?)? {
+            warn!(
+                change,
+                "the reference motion is not what the run began with"
+            );
+        }
         Ok(Self {
             run: config.checked("run", RunConfig::validate)?,
             fleet: config.checked("fleet", FleetConfig::validate)?,
@@ -44,6 +54,7 @@ impl LearnerConfig {
                 .and_then(|steps| steps.as_integer())
                 .context("config.toml lacks task.episode_steps; `ampco train` writes it")?
                 as f64,
+            text: config.to_toml(),
         })
     }
 

@@ -8,6 +8,7 @@
 
 mod config;
 mod cores;
+mod earned;
 mod gait;
 mod gathering;
 mod guidance;

@@ -4,17 +4,18 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Instant;
 
-use amp::{Batch, IterationReport, Learning, LearningError};
+use amp::{Batch, IterationReport, Learning, LearningError, PpoConfig};
 use anyhow::{Context, Result};
 use protocol::RewardReport;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use run::checkpoint::robots_of;
+use run::checkpoint::{CONFIG, robots_of};
 use run::{Checkpoint, CheckpointError, Contents, Folder, Mode};
 use serde::{Deserialize, Serialize};
 use tracing::{info, warn};
 
 use crate::config::LearnerConfig;
+use crate::earned::Earned;
 use crate::guidance::{Guide, Remembered};
 use crate::robot;
 
@@ -40,27 +41,8 @@ pub(crate) struct State {
     generator: Pcg64Mcg,
     /// The iteration of the newest checkpoint; writing it again would lose the actors' share.
     saved: Option<u64>,
+    /// What the newest policies have earned, by which checkpoints are compared.
     earned: Earned,
-}
-
-/// What robots have earned since the checkpoint before, by which checkpoints are compared: the task
-/// reward, which means the same in every phase.
-#[derive(Clone, Copy, Debug, Default)]
-struct Earned {
-    reward: f64,
-    episodes: u64,
-}
-
-impl Earned {
-    fn add(&mut self, report: &IterationReport) {
-        self.reward += report.task_mean * report.rows as f64;
-        self.episodes += report.terminations.total();
-    }
-
-    /// Mean sum of task rewards (Eq. 14) of an episode; `None` before one has ended.
-    fn score(&self) -> Option<f64> {
-        (self.episodes > 0).then(|| self.reward / self.episodes as f64)
-    }
 }
 
 /// A reward report as a checkpoint keeps it.
@@ -83,6 +65,8 @@ struct Shell {
     last_report: Option<StoredReport>,
     remembered: Option<Remembered>,
     generator: Pcg64Mcg,
+    #[serde(default)]
+    earned: Earned,
 }
 
 impl State {
@@ -105,7 +89,7 @@ impl State {
         };
         if resume {
             let checkpoints = folder.checkpoints();
-            let checkpoint = checkpoints.open_whole(&shape(config))?;
+            let checkpoint = checkpoints.open_whole(Some(&shape(config)))?;
             state.take_up(&checkpoint)?;
             checkpoints.forget_after(state.iteration)?;
             let whole = checkpoints.is_whole(&checkpoint);
@@ -155,12 +139,17 @@ impl State {
         self.learning
             .load(part(LEARNING)?)
             .with_context(|| format!("reading `{LEARNING}`"))?;
+        if let Some(config) = checkpoint.config()? {
+            let before: PpoConfig = config.section("ppo")?;
+            self.learning.retune(&before);
+        }
         self.iteration = checkpoint.iteration;
         self.saved = Some(checkpoint.iteration);
         self.seconds_before = shell.seconds;
         self.last_report = shell.last_report;
         self.remembered = shell.remembered;
         self.generator = shell.generator;
+        self.earned = shell.earned;
         Ok(())
     }
 
@@ -188,7 +177,7 @@ impl State {
             .learning
             .iterate(batch, &mut experts, guide.rule, guide.granularity);
         if let Ok(report) = &report {
-            self.earned.add(report);
+            self.earned.add(report, batch.robots());
             self.last_report = Some(StoredReport {
                 iteration: self.iteration,
                 samples: batch.rows() as u64,
@@ -227,11 +216,17 @@ impl State {
         if self.saved == Some(self.iteration) {
             return Ok(());
         }
+        let score = self.earned.score();
+        let earned = match score {
+            Some(_) => Earned::default(),
+            None => self.earned,
+        };
         let shell = Shell {
             seconds,
             last_report: self.last_report,
             remembered: self.remembered,
             generator: self.generator.clone(),
+            earned,
         };
         let shell = serde_json::to_vec_pretty(&shell).expect("the shell's share is plain data");
         let policy: Vec<u8> = self
@@ -248,15 +243,16 @@ impl State {
         let contents = Contents {
             shape: &shape(config),
             parts: &[
+                (CONFIG, config.text.as_bytes()),
                 (SHELL, &shell),
                 (LEARNING, &self.learning.save()),
                 (POLICY, &policy),
             ],
             awaited: &awaited,
-            score: self.earned.score(),
+            score,
         };
         checkpoints.write_contents(self.iteration, &contents)?;
-        self.earned = Earned::default();
+        self.earned = earned;
         self.saved = Some(self.iteration);
         checkpoints.prune(config.run.keep_checkpoints)
     }
@@ -298,3 +294,6 @@ fn shape(config: &LearnerConfig) -> String {
         learning.policy.hidden, learning.policy.critic_hidden, learning.discriminator.hidden
     )
 }
+
+#[cfg(test)]
+mod obeyed;

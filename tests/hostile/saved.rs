@@ -44,13 +44,13 @@ fn a_damaged_checkpoint_is_refused_and_an_older_one_is_gone_on_from() {
             Err(error) => {
                 assert!(!is_sound, "{error}");
                 assert_clear(&error);
-                let refusal = checkpoints.open_whole(SHAPE).unwrap_err().to_string();
+                let refusal = checkpoints.open_whole(Some(SHAPE)).unwrap_err().to_string();
                 assert!(refusal.contains("00000010"), "{refusal}");
             }
             // An attachment is checked when it is asked for; JSON may be spaced in many ways.
             Ok(_) if file == 3 && !is_sound => {
                 assert!(!matches!(checkpoints.attachment(20, files[3]), Ok(Some(_))));
-                assert_eq!(checkpoints.open_whole(SHAPE).unwrap().iteration, 10);
+                assert_eq!(checkpoints.open_whole(Some(SHAPE)).unwrap().iteration, 10);
             }
             Ok(checkpoint) => assert_eq!(checkpoint.part("b.bin"), Some(&b"weights"[..])),
         }

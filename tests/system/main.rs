@@ -18,6 +18,7 @@ mod licences;
 mod pair;
 mod pressure;
 mod repeat;
+mod resume;
 mod schedule;
 mod soak;
 mod stages;

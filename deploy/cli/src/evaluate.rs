@@ -8,6 +8,7 @@ pub(crate) mod judge;
 mod pictures;
 mod progress;
 mod reference;
+mod relearned;
 mod report;
 mod scenario;
 mod spread;

@@ -115,13 +115,11 @@ fn files(kept: &Kept) -> Result<Vec<(&'static str, Vec<u8>)>> {
 }
 
 fn origin(kept: &Kept, network: &Network) -> Result<Origin> {
-    let config = kept.config_path()?;
-    let text = std::fs::read(&config).with_context(|| format!("reading {}", config.display()))?;
     Ok(Origin {
         run: kept.run_name()?,
         iteration: kept.iteration,
         weights_sha256: network.hash(),
-        config_sha256: network::sha256(&text),
+        config_sha256: network::sha256(kept.config().to_toml().as_bytes()),
         ..Origin::default()
     })
 }

@@ -1,5 +1,7 @@
 //! `ampco train`: from options to a running group.
 
+mod resumed;
+
 use std::path::Path;
 
 use amp::PolicyConfig;
@@ -7,6 +9,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use motion::Dataset;
 use protocol::RolloutLayout;
+use run::motion::Print;
 use run::{Config, Folder};
 
 use crate::console::say;
@@ -16,6 +19,7 @@ use crate::place::Place;
 use crate::presets;
 use crate::resolve::{self, Resolved};
 use crate::supervise::{self, Launch};
+use resumed::GoingOn;
 
 /// Train: start scheduler, learner and actors, watch them, end them in order on Ctrl-C
 ///
@@ -23,7 +27,8 @@ use crate::supervise::{self, Launch};
 /// anything starts. A live line shows how it goes; metrics and logs are in the run's folder.
 #[derive(Debug, Args)]
 pub(crate) struct Train {
-    /// Preset: ampco, one of the methods it is compared with, smoke, or a TOML file [default: ampco]
+    /// Preset: ampco, one of the methods it is compared with, smoke, or a TOML file; with --resume it is laid over the
+    /// run's own configuration [default: ampco]
     #[arg(long, value_name = "NAME|FILE")]
     preset: Option<String>,
     /// Name of the run, a new one unless --resume [default: the preset's, numbered]
@@ -48,7 +53,8 @@ pub(crate) struct Train {
     /// million samples (ppo.critic_first)
     #[arg(long, value_name = "RUN|FOLDER", conflicts_with = "resume")]
     from: Option<String>,
-    /// Go on from the last checkpoint of --run, or of the newest run; without one, from its start
+    /// Go on from the last checkpoint of --run, or of the newest run; without one, from its start. What is set otherwise
+    /// than before is told and counts from there on; what a checkpoint cannot take, such as other networks, is refused
     #[arg(long)]
     resume: bool,
 }
@@ -57,22 +63,25 @@ impl Train {
     pub(crate) fn run(&self) -> Result<()> {
         // A soak or a study starts us as its child, and takes us along when it ends.
         protocol::end_with_supervisor()?;
-        let (folder, config, resolved) = if self.resume {
+        let ready = if self.resume {
             self.resumed()?
         } else {
             self.new_run()?
         };
+        let (folder, resolved) = (&ready.folder, &ready.resolved);
         let _supervisor = folder.lock("supervisor")?;
-        if !self.resume && has_history(&folder) {
+        if !self.resume && has_history(folder) {
             // Looked at again under the lock: another start may have been quicker.
-            return Err(taken(&folder));
+            return Err(taken(folder));
         }
+        ready.tell()?;
+        folder.note_motion(ready.iteration(), ready.motion.clone())?;
         let comment = format!(
             "Resolved configuration of run {}: every value, defaults included.\n\
              Written by `ampco train` at each start; change values with --set.",
             folder.name()
         );
-        config.write(&folder.config_path(), &comment)?;
+        ready.config.write(&folder.config_path(), &comment)?;
         say(&format!(
             "run {} in {} · {} actors × {} environments × {} steps · Ctrl-C ends it in order",
             folder.name(),
@@ -82,14 +91,14 @@ impl Train {
             resolved.fleet.steps,
         ));
         supervise::supervise(&Launch {
-            folder: &folder,
+            folder,
             run: &resolved.run,
             fleet: &resolved.fleet,
             resume: !folder.checkpoints().list().is_empty(),
         })
     }
 
-    fn new_run(&self) -> Result<(Folder, Config, Resolved)> {
+    fn new_run(&self) -> Result<Ready> {
         let preset = presets::find(self.preset.as_deref().unwrap_or("ampco"))?;
         let mut config = preset.config;
         self.apply(&mut config)?;
@@ -116,7 +125,8 @@ impl Train {
             config.put("run.from", path, &origin);
         }
         resolve::anchor_files(&mut config, preset.file.as_deref())?;
-        let resolved = checked(&mut config)?;
+        let resolved = resolve::resolve(&mut config)?;
+        let motion = check(&config, &resolved)?;
         let name = match &self.run {
             Some(name) => name.clone(),
             None => self.place.free_name(&preset.name),
@@ -126,22 +136,13 @@ impl Train {
         if has_history(&folder) {
             return Err(taken(&folder));
         }
-        Ok((folder, config, resolved))
-    }
-
-    fn resumed(&self) -> Result<(Folder, Config, Resolved)> {
-        let folder = self.place.find(self.run.as_deref())?;
-        if folder.checkpoints().list().is_empty() {
-            say("there is no checkpoint yet: the run begins anew");
-        }
-        if self.preset.is_some() {
-            say("--preset is passed over: a resumed run keeps its own configuration (see --set)");
-        }
-        let mut config = folder.config()?;
-        self.apply(&mut config)?;
-        resolve::anchor_files(&mut config, None)?;
-        let resolved = checked(&mut config)?;
-        Ok((folder, config, resolved))
+        Ok(Ready {
+            folder,
+            config,
+            resolved,
+            motion,
+            going_on: None,
+        })
     }
 
     /// Lays the options over what is there.
@@ -180,15 +181,27 @@ impl Train {
     }
 }
 
-/// Resolves, reads the reference motion, and asks the machine whether it can do it.
-fn checked(config: &mut Config) -> Result<Resolved> {
-    let resolved = resolve::resolve(config)?;
+/// What is about to be started; nothing is written yet.
+struct Ready {
+    folder: Folder,
+    config: Config,
+    resolved: Resolved,
+    /// The motion files as they are now.
+    motion: Vec<Print>,
+    /// Of a run that has a checkpoint.
+    going_on: Option<GoingOn>,
+}
+
+/// Reads the reference motion, and asks the machine whether it can do what is asked for; the files that were read.
+fn check(config: &Config, resolved: &Resolved) -> Result<Vec<Print>> {
     // Files are absolute by now, so the folder they would start from does not matter.
-    if let Err(error) = Dataset::load(&resolved.motion, Path::new(".")) {
-        // Its causes belong to the line: which row of which file.
-        let causes = format!("{:#}", anyhow::Error::from(error));
-        return Err(config.refuse("motion", causes).into());
-    }
+    let here = Path::new(".");
+    let files =
+        Dataset::load(&resolved.motion, here).and_then(|_| Dataset::files(&resolved.motion, here));
+    // Its causes belong to the line: which row of which file.
+    let files = files
+        .map_err(|error| config.refuse("motion", format!("{:#}", anyhow::Error::from(error))))?;
+    let prints = Print::of_all(&files)?;
     let layout = RolloutLayout {
         environments: resolved.fleet.environments_per_actor(),
         steps: resolved.fleet.steps,
@@ -206,7 +219,7 @@ fn checked(config: &mut Config) -> Result<Resolved> {
             free / 1_000_000
         );
     }
-    Ok(resolved)
+    Ok(prints)
 }
 
 /// Bytes free in /dev/shm.

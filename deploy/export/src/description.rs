@@ -51,7 +51,7 @@ pub struct Origin {
     pub iteration: u64,
     /// SHA-256 of the flat weights, little-endian f32; it names the policy whatever file it is in.
     pub weights_sha256: String,
-    /// SHA-256 of the run's `config.toml`.
+    /// SHA-256 of the configuration that it was trained under, as TOML without comments.
     pub config_sha256: String,
     /// SHA-256 of each file beside this one, by name.
     pub files_sha256: BTreeMap<String, String>,

@@ -10,6 +10,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::config::{Config, ConfigError};
 use crate::replace;
 
 mod attachments;
@@ -17,9 +18,13 @@ mod manifest;
 mod refusal;
 
 pub use manifest::FORMAT_VERSION;
-pub use refusal::{CheckpointError, Refusal};
+pub use refusal::{CheckpointError, Instead, Refusal};
 
 use manifest::{Manifest, Part, is_part_name};
+
+/// Name of the part that holds the configuration under which a checkpoint was trained. Not `config.toml`: that is put
+/// beside the parts by hand, and a part may not be replaced.
+pub const CONFIG: &str = "trained-with.toml";
 
 /// A checkpoint in memory, every part checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +35,7 @@ pub struct Checkpoint {
     pub shape: String,
     /// How good its owner finds it.
     pub score: Option<f64>,
+    path: PathBuf,
     parts: BTreeMap<String, Vec<u8>>,
     awaited: Vec<String>,
 }
@@ -48,13 +54,34 @@ pub struct Contents<'a> {
 }
 
 impl Checkpoint {
-    /// Opens and checks the checkpoint in a folder, whatever its shape.
+    /// Opens and checks the checkpoint in a folder, whatever its shape. Where it lies among others, a refusal names the
+    /// newest good one before it.
     pub fn open(path: &Path) -> Result<Self, CheckpointError> {
-        Self::inspect(path).map_err(|reason| CheckpointError::Refused {
-            path: path.to_owned(),
-            reason,
-            previous_good: None,
+        Self::inspect(path).map_err(|reason| {
+            // Only the whole path tells which others there are, also for one who stands in the folder.
+            let whole = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+            let name = whole.file_name().map(|name| name.to_string_lossy());
+            let place = name.as_deref().and_then(iteration_of).zip(whole.parent());
+            CheckpointError::Refused {
+                path: path.to_owned(),
+                reason,
+                instead: place.map_or(Instead::NoneEarlier, |(iteration, folder)| {
+                    Checkpoints::new(folder.to_owned()).before(iteration, None)
+                }),
+            }
         })
+    }
+
+    /// The configuration under which it was trained: its own part, or for one that was shipped or written by an older
+    /// program the `config.toml` beside its parts, if there is any.
+    pub fn config(&self) -> Result<Option<Config>, ConfigError> {
+        if let Some(text) = self.part(CONFIG) {
+            let origin = self.path.join(CONFIG).display().to_string();
+            return Config::parse(&String::from_utf8_lossy(text), &origin).map(Some);
+        }
+        let beside = self.path.join("config.toml");
+        let there = beside.is_file();
+        there.then(|| Config::read(&beside)).transpose()
     }
 
     /// The bytes of a part, or `None` when the checkpoint has no such part.
@@ -75,6 +102,7 @@ impl Checkpoint {
             iteration: manifest.iteration,
             shape: manifest.shape,
             score: manifest.score,
+            path: path.to_owned(),
             parts,
             awaited: manifest.awaited,
         })
@@ -110,11 +138,7 @@ impl Checkpoints {
         };
         let mut iterations: Vec<u64> = entries
             .filter_map(Result::ok)
-            .filter_map(|entry| {
-                let name = entry.file_name().to_string_lossy().into_owned();
-                let digits = name.len() >= 8 && name.bytes().all(|byte| byte.is_ascii_digit());
-                if digits { name.parse().ok() } else { None }
-            })
+            .filter_map(|entry| iteration_of(&entry.file_name().to_string_lossy()))
             .collect();
         iterations.sort_unstable();
         iterations
@@ -168,38 +192,51 @@ impl Checkpoints {
         }
     }
 
-    /// Opens the newest, which must be of this shape; a refusal names the newest good one.
-    pub fn open_newest(&self, shape: &str) -> Result<Checkpoint, CheckpointError> {
+    /// Opens the newest, which must be of this shape if one is given; a refusal names the newest good one.
+    pub fn open_newest(&self, shape: Option<&str>) -> Result<Checkpoint, CheckpointError> {
         match self.list().last() {
             Some(newest) => self.open(*newest, shape),
             None => Err(CheckpointError::None(self.folder.clone())),
         }
     }
 
-    /// The iteration of the one with the highest score; of equals the oldest.
+    /// The iteration of the one with the highest score; of equals the oldest. Scores are of a task, so only those count
+    /// that were trained under the `[task]` of the newest.
     pub fn best(&self) -> Option<u64> {
         let score = |at: u64| Manifest::read(&self.path(at)).ok()?.score;
+        let task = |at: u64| -> Option<toml::Value> {
+            let text = fs::read_to_string(self.path(at).join(CONFIG)).ok()?;
+            Config::parse(&text, CONFIG).ok()?.given("task").cloned()
+        };
         let scored = self.list().into_iter().rev();
-        scored
-            .filter_map(|at| Some((at, score(at)?)))
+        let scored: Vec<(u64, f64)> = scored.filter_map(|at| Some((at, score(at)?))).collect();
+        let newest = task(scored.first()?.0);
+        let alike = scored.into_iter().filter(|(at, _)| task(*at) == newest);
+        alike
             .max_by(|(_, a), (_, b)| a.total_cmp(b))
             .map(|(at, _)| at)
     }
 
-    /// Opens the one of an iteration, which must be of this shape.
-    pub fn open(&self, iteration: u64, shape: &str) -> Result<Checkpoint, CheckpointError> {
+    /// Opens the one of an iteration, which must be of this shape if one is given.
+    pub fn open(&self, iteration: u64, shape: Option<&str>) -> Result<Checkpoint, CheckpointError> {
         self.inspect(iteration, shape)
             .map_err(|reason| CheckpointError::Refused {
                 path: self.path(iteration),
                 reason,
-                previous_good: self
-                    .list()
-                    .into_iter()
-                    .rev()
-                    .filter(|other| *other < iteration)
-                    .find(|other| self.inspect(*other, shape).is_ok())
-                    .map(|other| self.path(other)),
+                instead: self.before(iteration, shape),
             })
+    }
+
+    /// What can be used in place of the one of an iteration.
+    fn before(&self, iteration: u64, shape: Option<&str>) -> Instead {
+        let mut earlier = self.list();
+        earlier.retain(|other| *other < iteration);
+        let is_good = |other: &u64| self.inspect(*other, shape).is_ok();
+        match earlier.iter().rev().copied().find(is_good) {
+            Some(good) => Instead::Earlier(self.path(good)),
+            None if earlier.is_empty() => Instead::NoneEarlier,
+            None => Instead::NoneGood,
+        }
     }
 
     /// Removes all but the `keep` newest and the best, and drafts that a crash left.
@@ -240,16 +277,22 @@ impl Checkpoints {
         Ok(())
     }
 
-    fn inspect(&self, iteration: u64, shape: &str) -> Result<Checkpoint, Refusal> {
+    fn inspect(&self, iteration: u64, shape: Option<&str>) -> Result<Checkpoint, Refusal> {
         let checkpoint = Checkpoint::inspect(&self.path(iteration))?;
-        if checkpoint.shape != shape {
-            return Err(Refusal::Shape {
+        match shape {
+            Some(shape) if checkpoint.shape != shape => Err(Refusal::Shape {
                 expected: shape.to_owned(),
                 found: checkpoint.shape,
-            });
+            }),
+            _ => Ok(checkpoint),
         }
-        Ok(checkpoint)
     }
+}
+
+/// The iteration that a folder's name says.
+fn iteration_of(name: &str) -> Option<u64> {
+    let digits = name.len() >= 8 && name.bytes().all(|byte| byte.is_ascii_digit());
+    digits.then(|| name.parse().ok()).flatten()
 }
 
 fn write_draft(draft: &Path, iteration: u64, contents: &Contents<'_>) -> io::Result<()> {

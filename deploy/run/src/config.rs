@@ -15,8 +15,10 @@ use toml::{Table, Value};
 use crate::{assignment, nearest, replace};
 
 mod error;
+mod tables;
 
 pub use error::ConfigError;
+use tables::{collect, mark, merge_tables};
 
 /// A configuration: what was given, over the defaults that each section's owner declares.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -85,6 +87,28 @@ impl Config {
         let mut parts = path.split('.');
         let first = self.table.get(parts.next()?)?;
         parts.try_fold(first, |value, name| value.get(name))
+    }
+
+    /// Every value by its dotted path; a list is one value, and so is an empty table.
+    pub fn leaves(&self) -> BTreeMap<String, Value> {
+        let mut leaves = BTreeMap::new();
+        collect(&self.table, "", &mut leaves);
+        leaves
+    }
+
+    /// Removes the value at a dotted path, if there is one.
+    pub fn remove(&mut self, path: &str) {
+        let Some((parent, name)) = path.rsplit_once('.') else {
+            self.table.remove(path);
+            return;
+        };
+        let mut table = Some(&mut self.table);
+        for part in parent.split('.') {
+            table = table.and_then(|table| table.get_mut(part)?.as_table_mut());
+        }
+        if let Some(table) = table {
+            table.remove(name);
+        }
     }
 
     /// The dotted path of every value that was given.
@@ -285,32 +309,6 @@ impl Config {
             Value::Table(table) => mark(table, &below, origin, &mut self.origins),
             _ => {
                 self.origins.insert(path.to_owned(), origin.to_owned());
-            }
-        }
-    }
-}
-
-/// Marks every leaf of a table with its origin.
-fn mark(table: &Table, prefix: &str, origin: &str, origins: &mut BTreeMap<String, String>) {
-    for (name, value) in table {
-        let path = format!("{prefix}{name}");
-        match value {
-            Value::Table(inner) if !inner.is_empty() => {
-                mark(inner, &format!("{path}."), origin, origins);
-            }
-            _ => {
-                origins.insert(path, origin.to_owned());
-            }
-        }
-    }
-}
-
-fn merge_tables(base: &mut Table, over: Table) {
-    for (name, value) in over {
-        match (base.get_mut(&name), value) {
-            (Some(Value::Table(inner)), Value::Table(value)) => merge_tables(inner, value),
-            (_, value) => {
-                base.insert(name, value);
             }
         }
     }

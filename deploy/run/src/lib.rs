@@ -5,6 +5,7 @@
 //! | entry | what | who writes | module |
 //! | --- | --- | --- | --- |
 //! | `config.toml` | the fully resolved configuration | `ampco train` | [`config`] |
+//! | `motion.json` | the motion files it learned from, by their hashes | `ampco train` | [`motion`] |
 //! | `metrics.jsonl` | one line of figures per iteration | the learner | [`metrics`] |
 //! | `events.out.tfevents.…` | the same figures for TensorBoard, a file per start | the learner | [`events`] |
 //! | `checkpoints/<iteration>/` | everything that an exact continuation needs | learner, actors | [`checkpoint`] |
@@ -24,7 +25,9 @@ pub mod folder;
 pub mod journal;
 pub mod log;
 pub mod metrics;
+pub mod motion;
 pub mod nearest;
+pub mod resume;
 pub mod roles;
 pub mod sections;
 

@@ -1,9 +1,9 @@
 //! Checkpoints as a run meets them: written, damaged, replaced, pruned.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::Path;
 
-use run::checkpoint::{CheckpointError, FORMAT_VERSION, Refusal};
+use run::checkpoint::{CONFIG, CheckpointError, FORMAT_VERSION, Instead, Refusal};
 use run::{Checkpoint, Checkpoints, Contents};
 
 const SHAPE: &str = "policy 82-8-23";
@@ -19,14 +19,16 @@ fn two() -> (tempfile::TempDir, Checkpoints) {
     (folder, checkpoints)
 }
 
-/// Why the newest is refused, and the good one named instead.
-fn refusal(checkpoints: &Checkpoints, shape: &str) -> (Refusal, Option<PathBuf>) {
-    match checkpoints.open_newest(shape).unwrap_err() {
+/// Why the newest is refused, and what is named instead.
+fn refusal(checkpoints: &Checkpoints, shape: &str) -> (Refusal, Instead) {
+    parts(checkpoints.open_newest(Some(shape)).unwrap_err())
+}
+
+fn parts(error: CheckpointError) -> (Refusal, Instead) {
+    match error {
         CheckpointError::Refused {
-            reason,
-            previous_good,
-            ..
-        } => (reason, previous_good),
+            reason, instead, ..
+        } => (reason, instead),
         other => panic!("{other}"),
     }
 }
@@ -35,7 +37,7 @@ fn refusal(checkpoints: &Checkpoints, shape: &str) -> (Refusal, Option<PathBuf>)
 fn what_was_written_comes_back() {
     let (_folder, checkpoints) = two();
     assert_eq!(checkpoints.list(), [10, 20]);
-    let newest = checkpoints.open_newest(SHAPE).unwrap();
+    let newest = checkpoints.open_newest(Some(SHAPE)).unwrap();
     assert_eq!(newest.iteration, 20);
     assert_eq!(newest.part("actor.bin"), Some(b"weights".as_slice()));
     assert_eq!(newest.part("optimizer.bin"), Some([7_u8; 100].as_slice()));
@@ -46,15 +48,18 @@ fn what_was_written_comes_back() {
 fn a_truncated_part_is_refused_and_the_previous_good_one_named() {
     let (_folder, checkpoints) = two();
     fs::write(checkpoints.path(20).join("optimizer.bin"), [7; 99]).unwrap();
-    let (reason, previous_good) = refusal(&checkpoints, SHAPE);
+    let (reason, instead) = refusal(&checkpoints, SHAPE);
     let expected = Refusal::Truncated {
         part: "optimizer.bin".to_owned(),
         expected: 100,
         found: 99,
     };
     assert_eq!(reason, expected);
-    assert_eq!(previous_good, Some(checkpoints.path(10)));
-    let words = checkpoints.open_newest(SHAPE).unwrap_err().to_string();
+    assert_eq!(instead, Instead::Earlier(checkpoints.path(10)));
+    let words = checkpoints
+        .open_newest(Some(SHAPE))
+        .unwrap_err()
+        .to_string();
     assert!(
         words.contains("99 bytes of 100") && words.contains("00000010"),
         "{words}"
@@ -79,21 +84,21 @@ fn a_missing_part_is_refused_and_with_both_damaged_none_is_named() {
     for iteration in [10, 20] {
         fs::remove_file(checkpoints.path(iteration).join("actor.bin")).unwrap();
     }
-    let (reason, previous_good) = refusal(&checkpoints, SHAPE);
+    let (reason, instead) = refusal(&checkpoints, SHAPE);
     assert_eq!(reason, Refusal::Missing("actor.bin".to_owned()));
-    assert_eq!(previous_good, None);
+    assert_eq!(instead, Instead::NoneGood);
 }
 
 #[test]
 fn another_shape_is_refused_with_both_named() {
     let (_folder, checkpoints) = two();
-    let (reason, previous_good) = refusal(&checkpoints, "policy 82-16-23");
+    let (reason, instead) = refusal(&checkpoints, "policy 82-16-23");
     let words = reason.to_string();
     assert!(
         words.contains("82-8-23") && words.contains("82-16-23"),
         "{words}"
     );
-    assert_eq!(previous_good, None);
+    assert_eq!(instead, Instead::NoneGood);
 }
 
 #[test]
@@ -175,7 +180,7 @@ fn an_attachment_is_checked_by_itself() {
     checkpoints.attach(20, "fleet-0.bin", b"worlds").unwrap();
     let back = checkpoints.attachment(20, "fleet-0.bin").unwrap();
     assert_eq!(back.as_deref(), Some(b"worlds".as_slice()));
-    checkpoints.open_newest(SHAPE).unwrap();
+    checkpoints.open_newest(Some(SHAPE)).unwrap();
 
     let file = checkpoints.path(20).join("fleet-0.bin");
     let mut bytes = fs::read(&file).unwrap();
@@ -199,6 +204,82 @@ fn an_unwritable_folder_is_an_error_and_leaves_the_others() {
     assert!(matches!(error, CheckpointError::Io { .. }), "{error}");
 }
 
+#[test]
+fn a_damaged_folder_that_is_opened_by_itself_names_the_good_one_before_it() {
+    let (folder, checkpoints) = two();
+    checkpoints
+        .write(30, SHAPE, &[("actor.bin", b"weights")])
+        .unwrap();
+    fs::write(checkpoints.path(30).join("actor.bin"), b"weight").unwrap();
+    let opened = |path: &Path| parts(Checkpoint::open(path).unwrap_err()).1;
+    let newest = checkpoints.path(30);
+    assert_eq!(opened(&newest), Instead::Earlier(checkpoints.path(20)));
+    // The one in the middle is damaged as well, in another way.
+    fs::remove_file(checkpoints.path(20).join("manifest.json")).unwrap();
+    assert_eq!(opened(&newest), Instead::Earlier(checkpoints.path(10)));
+    assert_eq!(
+        opened(&checkpoints.path(20)),
+        Instead::Earlier(checkpoints.path(10))
+    );
+    fs::write(checkpoints.path(10).join("optimizer.bin"), []).unwrap();
+    assert_eq!(opened(&newest), Instead::NoneGood);
+    // Before the oldest there is none, and beside one that lies alone neither.
+    assert_eq!(opened(&checkpoints.path(10)), Instead::NoneEarlier);
+    let alone = folder.path().join("judge");
+    fs::rename(&newest, &alone).unwrap();
+    assert_eq!(opened(&alone), Instead::NoneEarlier);
+    let words = Checkpoint::open(&alone).unwrap_err().to_string();
+    assert!(
+        words.ends_with("there is no earlier one beside it"),
+        "{words}"
+    );
+}
+
+#[test]
+fn a_checkpoint_knows_the_configuration_it_was_trained_under() {
+    let (_folder, checkpoints) = two();
+    let hidden = |iteration: u64| {
+        let checkpoint = Checkpoint::open(&checkpoints.path(iteration)).unwrap();
+        let config = checkpoint.config().unwrap()?;
+        config.given("policy.hidden").map(ToString::to_string)
+    };
+    assert_eq!(hidden(20), None, "written by an older program");
+    // What is put beside the parts is taken where there is no part of its own, and never in its place.
+    let beside = |iteration| checkpoints.path(iteration).join("config.toml");
+    fs::write(beside(20), "[policy]\nhidden = [16]").unwrap();
+    assert_eq!(hidden(20).as_deref(), Some("[16]"));
+    let text = b"[policy]\nhidden = [8, 8]".as_slice();
+    checkpoints.write(30, SHAPE, &[(CONFIG, text)]).unwrap();
+    fs::write(beside(30), "[policy]\nhidden = [16]").unwrap();
+    assert_eq!(hidden(30).as_deref(), Some("[8, 8]"));
+}
+
+#[test]
+fn scores_of_another_task_do_not_count() {
+    let folder = tempfile::tempdir().unwrap();
+    let checkpoints = Checkpoints::new(folder.path().to_owned());
+    let write = |iteration, kernel: &str, score| {
+        let config = format!("[task]\nkernel = {kernel}\n[ppo]\nepochs = {iteration}");
+        let contents = Contents {
+            shape: SHAPE,
+            parts: &[(CONFIG, config.as_bytes())],
+            score,
+            ..Contents::default()
+        };
+        checkpoints.write_contents(iteration, &contents).unwrap();
+    };
+    write(10, "0.25", Some(90.0));
+    write(20, "2.0", Some(50.0));
+    write(30, "2.0", Some(60.0));
+    write(40, "2.0", Some(55.0));
+    assert_eq!(checkpoints.best(), Some(30));
+    // One without a score says nothing of the task either way.
+    write(50, "0.25", None);
+    assert_eq!(checkpoints.best(), Some(30));
+    write(60, "0.25", Some(1.0));
+    assert_eq!(checkpoints.best(), Some(10));
+}
+
 /// A checkpoint of one part, of this score, for which `actor-0.bin` is awaited.
 fn awaiting(checkpoints: &Checkpoints, iteration: u64, score: f64) {
     let contents = Contents {
@@ -214,7 +295,7 @@ fn awaiting(checkpoints: &Checkpoints, iteration: u64, score: f64) {
 fn what_others_never_attached_is_passed_over_for_an_older_one_that_is_whole() {
     let folder = tempfile::tempdir().unwrap();
     let checkpoints = Checkpoints::new(folder.path().join("checkpoints"));
-    let opened = || checkpoints.open_whole(SHAPE).unwrap().iteration;
+    let opened = || checkpoints.open_whole(Some(SHAPE)).unwrap().iteration;
     awaiting(&checkpoints, 10, 0.0);
     assert_eq!(opened(), 10, "rather one without its actors than none");
     checkpoints.attach(10, "actor-0.bin", b"robots").unwrap();

@@ -3,7 +3,7 @@
 mod stages;
 
 use crate::batch::Batch;
-use crate::config::LearningConfig;
+use crate::config::{LearningConfig, PpoConfig, RateSchedule};
 use crate::discrimination::Discriminator;
 use crate::error::Fault;
 use crate::ppo::Ppo;
@@ -93,6 +93,23 @@ impl Learning {
     pub fn with_clock(mut self, clock: Clock) -> Self {
         self.clock = clock;
         self
+    }
+
+    /// Takes over what the configuration says otherwise than `before`, that of the saved state which was loaded: the state
+    /// has a rate of its own, which follows the KL divergence, and would go on with that. A rate or schedule that was
+    /// changed begins with the rate that is now given; changed limits bind at once.
+    pub fn retune(&mut self, before: &PpoConfig) {
+        let now = &self.config.ppo;
+        let (_, _, rate) = self.core.ppo.state_mut();
+        if (now.learning_rate, now.schedule) != (before.learning_rate, before.schedule) {
+            *rate = now.learning_rate;
+        }
+        let limits = (now.min_learning_rate, now.max_learning_rate);
+        if limits != (before.min_learning_rate, before.max_learning_rate)
+            && now.schedule != RateSchedule::Fixed
+        {
+            *rate = rate.clamp(limits.0, limits.1);
+        }
     }
 
     /// Iterations done.

@@ -5,7 +5,7 @@ use serde::ser::{SerializeMap, Serializer};
 use vocabulary::{Cause, Counts};
 
 /// Figures of one iteration. All but [`Self::seconds`] are the same for the same inputs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct IterationReport {
     /// Iterations done, this one included.
     pub iteration: u64,

@@ -165,6 +165,11 @@ impl MotionConfig {
 }
 
 impl ClipConfig {
+    /// Whether it is made by the program itself, and needs no file.
+    pub fn is_built_in(&self) -> bool {
+        self.file.is_none() && self.folder.is_none()
+    }
+
     fn validate(&self, index: usize) -> Result<(), MotionError> {
         let field = |name: &str| format!("clips[{index}].{name}");
         if !(self.weight.is_finite() && self.weight > 0.0 && self.weight <= 1e6) {

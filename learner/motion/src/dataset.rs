@@ -13,7 +13,7 @@ use g1::observation::{ANGULAR_VELOCITY, LINEAR_VELOCITY, features};
 use g1::{FEATURES, RobotState};
 use rand::{Rng, RngExt};
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Which features are velocity forward and aside, m/s, and yaw rate, rad/s.
 const VELOCITY: [usize; 3] = [
@@ -61,6 +61,22 @@ impl Dataset {
         } else {
             data
         })
+    }
+
+    /// The files that [`Dataset::load`] reads, each once, in the order of the clips; none of built-in gaits.
+    ///
+    /// # Errors
+    /// A folder that cannot be read or holds nothing. Whether a file is there and can be used is not looked at.
+    pub fn files(config: &MotionConfig, base_dir: &Path) -> Result<Vec<PathBuf>, MotionError> {
+        let mut files: Vec<PathBuf> = Vec::new();
+        for source in &config.clips {
+            for file in source::files(source, base_dir)? {
+                if !files.contains(&file) {
+                    files.push(file);
+                }
+            }
+        }
+        Ok(files)
     }
 
     /// The same clips, drawn so that every speed has the same share.

@@ -67,7 +67,9 @@ impl Report {
                 from_reference: scenario.from_reference,
                 randomize: !scenario.rows.is_empty(),
                 push: scenario.push,
-                reference: single.then(|| subject.reference.nearest(command)).flatten(),
+                reference: single
+                    .then(|| subject.reference().nearest(command))
+                    .flatten(),
                 outcome: tally.outcome(),
             }
         };

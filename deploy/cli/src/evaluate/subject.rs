@@ -1,15 +1,19 @@
 //! What is evaluated: a checkpoint with the configuration that it was trained under.
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use amp::LearningConfig;
 use anyhow::{Context, Result};
-use motion::{Dataset, MotionConfig};
+use motion::MotionConfig;
 use policy::{Policy, Shape};
+use run::motion::Learned;
 use run::{Checkpoint, Config};
 use sim::{Starts, TaskConfig};
 
 use super::reference::Reference;
+use super::relearned;
+use crate::console::say;
 use crate::failure::usage;
 use crate::place::Place;
 
@@ -26,7 +30,9 @@ pub(crate) struct Kept {
 pub(crate) struct Subject {
     pub(crate) kept: Kept,
     pub(crate) task: TaskConfig,
-    pub(super) reference: Reference,
+    motion: MotionConfig,
+    /// Made when it is first asked for: most who watch a policy never do.
+    reference: OnceLock<Reference>,
 }
 
 impl Kept {
@@ -48,7 +54,7 @@ impl Kept {
             checkpoints.path(newest)
         };
         let checkpoint = Checkpoint::open(&path)?;
-        let config = Config::read(&config_of(&path)?)?;
+        let config = config_of(&checkpoint, &path)?;
         Ok(Self {
             iteration: checkpoint.iteration,
             learning: LearningConfig {
@@ -87,23 +93,34 @@ impl Kept {
         Ok(self.config.checked("task", TaskConfig::validate)?)
     }
 
-    /// The configuration that it was trained under, as a file.
-    pub(crate) fn config_path(&self) -> Result<PathBuf> {
-        config_of(&self.path)
+    /// The configuration that it was trained under.
+    pub(crate) fn config(&self) -> &Config {
+        &self.config
     }
 
     /// The name of the run, or of the folder of a shipped policy.
     pub(crate) fn run_name(&self) -> Result<String> {
-        let config = std::path::absolute(self.config_path()?)?;
-        let folder = config.parent().and_then(Path::file_name);
-        Ok(folder.map_or_else(String::new, |name| name.to_string_lossy().into_owned()))
+        let home = self.home().canonicalize()?;
+        let name = home.file_name();
+        Ok(name.map_or_else(String::new, |name| name.to_string_lossy().into_owned()))
+    }
+
+    /// The folder of its run, or its own if it lies in none.
+    pub(crate) fn home(&self) -> PathBuf {
+        run_of(&self.path).unwrap_or_else(|| self.path.clone())
+    }
+
+    /// The motion files that it was learned from, with their hashes; `None` where nothing was written down.
+    pub(crate) fn learned_from(&self) -> Result<Option<Learned>> {
+        let learned = run::motion::read(&self.home())?;
+        let by_then = |learned: &Learned| learned.since <= self.iteration;
+        Ok(learned.into_iter().rfind(by_then))
     }
 
     /// Where evaluations of it are kept: `evaluation/` in the run's folder, or beside the parts of
     /// a checkpoint that lies in no run.
     pub(crate) fn evaluations(&self) -> PathBuf {
-        let home = run_of(&self.path).unwrap_or_else(|| self.path.clone());
-        home.join("evaluation")
+        self.home().join("evaluation")
     }
 }
 
@@ -111,10 +128,10 @@ impl Subject {
     pub(crate) fn open(place: &Place, name: &str) -> Result<Self> {
         let kept = Kept::open(place, name)?;
         let motion: MotionConfig = kept.config.section("motion")?;
-        let dataset = Dataset::load(&motion, &kept.path).context("loading the reference motion")?;
         Ok(Self {
             task: kept.task()?,
-            reference: Reference::of(&dataset),
+            motion,
+            reference: OnceLock::new(),
             kept,
         })
     }
@@ -131,24 +148,35 @@ impl Subject {
 
     /// Frames to begin from that go about as `command` asks.
     pub(crate) fn starts(&self, command: [f32; 3]) -> Starts {
-        self.reference.starts(command)
+        self.reference().starts(command)
+    }
+
+    /// The motion that it was taught by as a measure; where that is not to be had, the built-in gaits, and it is said.
+    pub(super) fn reference(&self) -> &Reference {
+        self.reference.get_or_init(|| {
+            let (dataset, lack) = relearned::dataset(&self.kept, &self.motion);
+            if let Some(lack) = lack {
+                say(&format!(
+                    "{lack}: where reference motion is asked for, built-in gaits stand in for it"
+                ));
+            }
+            Reference::of(&dataset)
+        })
     }
 }
 
-/// The configuration of a checkpoint: beside its parts, or that of the run it lies in.
-fn config_of(checkpoint: &Path) -> Result<PathBuf> {
-    let beside = checkpoint.join("config.toml");
-    let of_the_run = run_of(checkpoint).map(|run| run.join("config.toml"));
-    [Some(beside), of_the_run]
-        .into_iter()
-        .flatten()
-        .find(|path| path.is_file())
-        .ok_or_else(|| {
-            usage(format!(
-                "{} has no config.toml beside it or in its run",
-                checkpoint.display()
-            ))
-        })
+/// The configuration of a checkpoint: its own, or that of the run it lies in.
+fn config_of(checkpoint: &Checkpoint, path: &Path) -> Result<Config> {
+    if let Some(own) = checkpoint.config()? {
+        return Ok(own);
+    }
+    let Some(run) = run_of(path) else {
+        return Err(usage(format!(
+            "{} has no config.toml beside it or in its run",
+            path.display()
+        )));
+    };
+    Ok(Config::read(&run.join("config.toml"))?)
 }
 
 /// The folder of the run that a checkpoint lies in.

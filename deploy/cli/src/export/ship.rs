@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 
 use amp::Learning;
 use anyhow::{Context, Result};
-use run::Checkpoints;
+use motion::{ClipConfig, MotionConfig};
+use run::motion::{Learned, Print};
+use run::{Checkpoints, Config};
 
 use crate::evaluate::judge::Judge;
 use crate::evaluate::subject::Kept;
@@ -37,14 +39,13 @@ pub(super) fn write(kept: &Kept, folder: &Path) -> Result<Vec<(PathBuf, usize)>>
     let written = Checkpoints::new(draft.clone())
         .write(kept.iteration, "shipped", &parts)
         .context("writing the policy")?;
-    let config = kept.config_path()?;
-    let text = std::fs::read_to_string(&config)
-        .with_context(|| format!("reading {}", config.display()))?;
-    run::replace_file(
-        &written.join("config.toml"),
-        without_origin(&text).as_bytes(),
-    )
-    .with_context(|| format!("writing {}", written.display()))?;
+    let learned = kept.learned_from()?.map(named);
+    let files = learned.as_ref().map_or(&[][..], |learned| &learned.files);
+    let (config, comment) = configuration(kept, files)?;
+    config.write(&written.join("config.toml"), &comment)?;
+    if let Some(learned) = &learned {
+        run::motion::write(&written, std::slice::from_ref(learned))?;
+    }
     std::fs::rename(&written, folder)
         .with_context(|| format!("moving the policy to {}", folder.display()))?;
     std::fs::remove_dir(&draft).with_context(|| format!("removing {}", draft.display()))?;
@@ -75,16 +76,49 @@ fn critic(kept: &Kept) -> Result<Option<Vec<u8>>> {
     Ok(Some(numbers.collect()))
 }
 
-/// A resolved configuration, one key a line, without `run.from`: a folder that nobody else has.
-fn without_origin(text: &str) -> String {
-    let mut section = "";
-    let kept = text.split_inclusive('\n').filter(|line| {
-        if line.starts_with('[') {
-            section = line.trim_end();
+/// The configuration without what only this machine has, and the comment above it: no folder that the run began with,
+/// and no motion file, which may not even be passed on. What was learned from is told by names and hashes.
+fn configuration(kept: &Kept, learned: &[Print]) -> Result<(Config, String)> {
+    let mut config = kept.config().clone();
+    config.remove("run.from");
+    let mut comment = format!(
+        "Resolved configuration of run {}: every value, defaults included.\n\
+         Written by `ampco export --ship`.",
+        kept.run_name()?
+    );
+    let motion: MotionConfig = config.section("motion")?;
+    let (built_in, files): (Vec<_>, Vec<_>) =
+        motion.clips.into_iter().partition(ClipConfig::is_built_in);
+    if !files.is_empty() {
+        let rest = MotionConfig {
+            clips: built_in,
+            ..motion
+        };
+        config.resolve("motion", &rest);
+        if rest.clips.is_empty() {
+            // No clip at all is refused by whoever reads it; without the key the default walks stand in.
+            config.remove("motion.clips");
         }
-        !(section == "[run]" && line.starts_with("from = "))
-    });
-    kept.collect()
+        comment.push_str(
+            "\nIt has learned from motion files, which are not part of it; [motion] has the rest.",
+        );
+    }
+    for print in learned {
+        comment.push_str(&format!("\n  {} {}", print.sha256, print.file.display()));
+    }
+    Ok((config, comment))
+}
+
+/// What it learned from, by names alone.
+fn named(learned: Learned) -> Learned {
+    let name = |print: Print| Print {
+        file: print.file.file_name().unwrap_or_default().into(),
+        ..print
+    };
+    Learned {
+        since: 0,
+        files: learned.files.into_iter().map(name).collect(),
+    }
 }
 
 #[cfg(test)]
@@ -92,13 +126,6 @@ mod tests {
     use super::*;
     use crate::evaluate::subject::Subject;
     use crate::place::Place;
-
-    #[test]
-    fn where_a_run_began_is_not_shipped() {
-        let text = "# Resolved\n[run]\nfrom = \"/a/b\"\nseed = 1\n\n[other]\nfrom = 2\n";
-        let shipped = "# Resolved\n[run]\nseed = 1\n\n[other]\nfrom = 2\n";
-        assert_eq!(without_origin(text), shipped);
-    }
 
     #[test]
     fn a_shipped_policy_opens_like_a_checkpoint_and_ships_again() {
@@ -118,10 +145,12 @@ mod tests {
         let files = write(&subject.kept, &again).unwrap();
         // Shipped before critics were, it has none to pass on.
         assert_eq!(files.len(), 4);
-        for name in ["policy.bin", "judge.bin", "config.toml"] {
+        for name in ["policy.bin", "judge.bin"] {
             let bytes = |folder: &Path| std::fs::read(folder.join(name)).unwrap();
             assert_eq!(bytes(&again), bytes(Path::new(walk)), "{name}");
         }
+        let leaves = |folder: &Path| Config::read(&folder.join("config.toml")).unwrap().leaves();
+        assert_eq!(leaves(&again), leaves(Path::new(walk)));
         assert_eq!(
             Kept::open(&place, again.to_str().unwrap())
                 .unwrap()
@@ -137,5 +166,83 @@ mod tests {
                 .count(),
             1
         );
+    }
+
+    /// Every text in a configuration, in lists as well.
+    fn texts(value: &toml::Value, found: &mut Vec<String>) {
+        match value {
+            toml::Value::String(text) => found.push(text.clone()),
+            toml::Value::Array(list) => list.iter().for_each(|value| texts(value, found)),
+            toml::Value::Table(table) => table.values().for_each(|value| texts(value, found)),
+            _ => {}
+        }
+    }
+
+    #[test]
+    fn nothing_that_only_this_machine_has_is_shipped() {
+        let place = Place {
+            runs_dir: "runs".into(),
+        };
+        let walk = concat!(env!("CARGO_MANIFEST_DIR"), "/../policies/walk");
+        let folder = tempfile::tempdir().unwrap();
+        let run = run::Folder::create(folder.path(), "mine").unwrap();
+        let mut config = Config::read(&Path::new(walk).join("config.toml")).unwrap();
+        config.put("run.from", "/home/me/runs/first", "a test");
+        for (clips, left) in [
+            ("[{folder='/home/me/walks'},{gait='stand',weight=0.5}]", 1),
+            ("[{file='/home/me/a.csv',fps=50.0}]", 5),
+        ] {
+            config.set(&format!("motion.clips={clips}")).unwrap();
+            config.write(&run.config_path(), "a test").unwrap();
+            let at = run.checkpoints().path(30);
+            std::fs::create_dir_all(&at).unwrap();
+            for name in ["manifest.json", "policy.bin", "judge.bin"] {
+                std::fs::copy(Path::new(walk).join(name), at.join(name)).unwrap();
+            }
+            let print = Print {
+                file: "/home/me/walks/a.csv".into(),
+                sha256: "0123".into(),
+            };
+            run.note_motion(0, vec![print]).unwrap();
+            let shipped = folder.path().join(format!("shipped-{left}"));
+            let kept = Kept::open(&place, run.path().to_str().unwrap()).unwrap();
+            write(&kept, &shipped).unwrap();
+
+            let subject = Subject::open(&place, shipped.to_str().unwrap()).unwrap();
+            let mut found = Vec::new();
+            for value in subject.kept.config().leaves().values() {
+                texts(value, &mut found);
+            }
+            assert!(
+                !found.is_empty() && found.iter().all(|text| !text.contains('/')),
+                "{found:?}"
+            );
+            for file in std::fs::read_dir(&shipped).unwrap() {
+                let bytes = std::fs::read(file.unwrap().path()).unwrap();
+                assert!(!bytes.windows(8).any(|window| window == b"/home/me"));
+            }
+            // What it learned from is known by name and hash, and that it cannot be had is no hindrance.
+            let learned = subject.kept.learned_from().unwrap().unwrap();
+            assert_eq!(
+                learned.files,
+                [Print {
+                    file: "a.csv".into(),
+                    sha256: "0123".into()
+                }]
+            );
+            let motion: MotionConfig = subject.kept.config().section("motion").unwrap();
+            assert_eq!(motion.clips.len(), left);
+            assert!(!subject.starts([0.5, 0.0, 0.0]).states.is_empty());
+            // Shipped again it is the same.
+            let again = folder.path().join(format!("again-{left}"));
+            write(&subject.kept, &again).unwrap();
+            let leaves =
+                |folder: &Path| Config::read(&folder.join("config.toml")).unwrap().leaves();
+            assert_eq!(leaves(&again), leaves(&shipped));
+            assert_eq!(
+                run::motion::read(&again).unwrap(),
+                run::motion::read(&shipped).unwrap()
+            );
+        }
     }
 }

@@ -4,15 +4,15 @@
 //! that is killed never adds its own.
 
 use super::manifest::{Part, is_part_name};
-use super::{Checkpoint, CheckpointError, Checkpoints, Refusal};
+use super::{Checkpoint, CheckpointError, Checkpoints, Instead, Refusal};
 use crate::replace;
 use std::{fs, io};
 
 impl Checkpoints {
-    /// Opens the newest that nothing is missing of, and which must be of this shape: what others were
-    /// to attach when they were killed may never have come. Where none is whole, the newest is
-    /// opened; a newest that is damaged is refused as by [`Checkpoints::open_newest`].
-    pub fn open_whole(&self, shape: &str) -> Result<Checkpoint, CheckpointError> {
+    /// Opens the one to go on from: the newest that nothing is missing of, since what others were to attach when they
+    /// were killed may never have come. Where none is whole, the newest is opened; a newest that is damaged is
+    /// refused as by [`Checkpoints::open_newest`]. Given a shape, all must be of it.
+    pub fn open_whole(&self, shape: Option<&str>) -> Result<Checkpoint, CheckpointError> {
         let newest = self.open_newest(shape)?;
         if self.is_whole(&newest) {
             return Ok(newest);
@@ -36,7 +36,7 @@ impl Checkpoints {
     pub fn newest_whole(&self) -> Option<u64> {
         let newest_first = self.list().into_iter().rev();
         newest_first
-            .filter_map(|at| Checkpoint::open(&self.path(at)).ok())
+            .filter_map(|at| self.inspect(at, None).ok())
             .find(|checkpoint| self.is_whole(checkpoint))
             .map(|checkpoint| checkpoint.iteration)
     }
@@ -70,7 +70,7 @@ impl Checkpoints {
             .map_err(|reason| CheckpointError::Refused {
                 path: self.path(iteration),
                 reason,
-                previous_good: None,
+                instead: Instead::Unasked,
             })
     }
 }

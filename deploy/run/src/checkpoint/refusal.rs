@@ -1,7 +1,7 @@
 //! What is said about a checkpoint that cannot be used: the reason, and the newest good one.
 
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::FORMAT_VERSION;
 
@@ -9,14 +9,14 @@ use super::FORMAT_VERSION;
 #[derive(Debug, thiserror::Error)]
 pub enum CheckpointError {
     /// It was looked at and found wanting.
-    #[error("checkpoint {} is refused: {reason}; {}", path.display(), remedy(previous_good.as_deref()))]
+    #[error("checkpoint {} is refused: {reason}{instead}", path.display())]
     Refused {
         /// The checkpoint's folder.
         path: PathBuf,
         /// What is wrong with it.
         reason: Refusal,
-        /// The newest older checkpoint of the run that is good.
-        previous_good: Option<PathBuf>,
+        /// What can be used in its place.
+        instead: Instead,
     },
     /// The run has none.
     #[error("there is no checkpoint in {}", .0.display())]
@@ -73,12 +73,31 @@ pub enum Refusal {
     },
 }
 
-fn remedy(previous_good: Option<&Path>) -> String {
-    match previous_good {
-        Some(path) => format!(
-            "the newest good one before it is {}: move the refused one away to go on from that",
-            path.display()
-        ),
-        None => "no earlier checkpoint is good".to_owned(),
+/// What can be used in place of a refused checkpoint; as text it ends the sentence that refuses.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Instead {
+    /// The newest good one of those before it.
+    Earlier(PathBuf),
+    /// There are earlier ones, and none of them is good.
+    NoneGood,
+    /// There is none before it, as of a checkpoint that lies alone.
+    NoneEarlier,
+    /// Nothing was looked for: the checkpoint is used without what was refused.
+    Unasked,
+}
+
+impl std::fmt::Display for Instead {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Earlier(path) => write!(
+                f,
+                "; the newest good one before it is {}: give that folder, or move the refused one away to go on from \
+                 that",
+                path.display()
+            ),
+            Self::NoneGood => f.write_str("; no earlier checkpoint is good"),
+            Self::NoneEarlier => f.write_str("; there is no earlier one beside it"),
+            Self::Unasked => Ok(()),
+        }
     }
 }

@@ -52,6 +52,32 @@ pub(super) fn load_clips(
     Ok(clips)
 }
 
+/// The files that a source is read from, the skeletons beside `.amc` files included.
+pub(super) fn files(source: &ClipConfig, base_dir: &Path) -> Result<Vec<PathBuf>, MotionError> {
+    let mut files = match (&source.file, &source.folder) {
+        (Some(file), _) => vec![base_dir.join(file)],
+        (None, Some(folder)) => tables(&base_dir.join(folder))?,
+        (None, None) => Vec::new(),
+    };
+    if files.iter().any(|file| has_extension(file, "amc")) {
+        // Which of them is meant is the importer's business; a name that it takes for a file is in its folder.
+        let beside = files[0].parent().map(std::fs::read_dir);
+        let beside = beside.and_then(Result::ok).into_iter().flatten().flatten();
+        files.extend(
+            beside
+                .map(|entry| entry.path())
+                .filter(|path| has_extension(path, "asf")),
+        );
+        files.sort();
+    }
+    Ok(files)
+}
+
+fn has_extension(path: &Path, expected: &str) -> bool {
+    path.extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case(expected))
+}
+
 /// The tables in a folder, sorted by name: the order must not depend on the file system.
 fn tables(folder: &Path) -> Result<Vec<PathBuf>, MotionError> {
     let read = |source| MotionError::Read {

@@ -20,6 +20,30 @@ fn numbered(base: f32, frames: usize, cyclic: bool, weight: f32) -> Clip {
 }
 
 #[test]
+fn the_files_of_a_configuration_are_all_that_it_reads() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["b.csv", "a.csv", "notes.txt", "02_01.amc", "02.asf"] {
+        std::fs::write(folder.path().join(name), "").unwrap();
+    }
+    let files = |text: &str| {
+        let config: MotionConfig = toml::from_str(text).unwrap();
+        let files = Dataset::files(&config, folder.path()).unwrap();
+        let names = files
+            .iter()
+            .map(|file| file.strip_prefix(folder.path()).unwrap());
+        names
+            .map(|name| name.display().to_string())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(files("clips = [{ gait = 'walk', speed = 0.8 }]"), [""; 0]);
+    // A skeleton is learned from as well, and a file that is named twice is one.
+    assert_eq!(
+        files("clips = [{ folder = '.' }, { file = '02_01.amc' }, { file = 'a.csv' }]"),
+        ["a.csv", "b.csv", "02.asf", "02_01.amc"]
+    );
+}
+
+#[test]
 fn a_window_tells_the_command_that_it_obeys() {
     let mut rng = Pcg64Mcg::seed_from_u64(3);
     let mut window = [0.0; 2 * FEATURES];

@@ -1,0 +1,148 @@
+//! `ampco train --resume`: what a run goes on with.
+//!
+//! Separate because here two configurations meet, that of the checkpoint and the one that is asked for now. All that the
+//! checkpoint cannot take is refused before a byte is written, so that a mistake leaves the run as it was.
+
+use anyhow::{Context, Result};
+use run::resume::{self, Change};
+use run::{Checkpoint, Config, Folder, metrics};
+use serde::Deserialize;
+
+use super::{Ready, Train, check};
+use crate::console::say;
+use crate::failure::usage;
+use crate::{presets, resolve};
+
+/// What a run goes on from.
+pub(super) struct GoingOn {
+    iteration: u64,
+    /// What changes from here on.
+    changes: Vec<Change>,
+    /// The configuration so far, for a checkpoint of an older program, which has none of its own.
+    note: Option<Config>,
+}
+
+impl Train {
+    pub(super) fn resumed(&self) -> Result<Ready> {
+        let folder = self.place.find(self.run.as_deref())?;
+        let before = folder.config()?;
+        let mut config = before.clone();
+        let mut preset_file = None;
+        if let Some(name) = &self.preset {
+            let preset = presets::find(name)?;
+            lay(&mut config, preset.config, name);
+            preset_file = preset.file;
+        }
+        self.apply(&mut config)?;
+        resolve::anchor_files(&mut config, preset_file.as_deref())?;
+        let resolved = resolve::resolve(&mut config)?;
+        let going_on = if folder.checkpoints().list().is_empty() {
+            say("there is no checkpoint yet: the run begins anew");
+            None
+        } else {
+            let checkpoint = folder.checkpoints().open_whole(None)?;
+            Some(going_on(&folder, &checkpoint, before, &config)?)
+        };
+        let motion = check(&config, &resolved)?;
+        Ok(Ready {
+            folder,
+            config,
+            resolved,
+            motion,
+            going_on,
+        })
+    }
+}
+
+impl Ready {
+    /// Iterations done.
+    pub(super) fn iteration(&self) -> u64 {
+        self.going_on
+            .as_ref()
+            .map_or(0, |going_on| going_on.iteration)
+    }
+
+    /// In which files the motion is no longer what the checkpoint was learned from.
+    fn motion_differences(&self) -> Result<Vec<String>> {
+        let learned = self.folder.motion()?;
+        let before = run::motion::at(&learned, self.iteration());
+        Ok(before.map_or_else(Vec::new, |before| {
+            run::motion::differences(before, &self.motion)
+        }))
+    }
+
+    /// Says what changes, and makes a checkpoint of an older program tell its configuration before the run's is replaced.
+    pub(super) fn tell(&self) -> Result<()> {
+        let Some(going_on) = &self.going_on else {
+            return Ok(());
+        };
+        let at = going_on.iteration;
+        for change in &going_on.changes {
+            say(&format!("from iteration {at} on: {change}"));
+        }
+        for change in self.motion_differences()? {
+            say(&format!(
+                "from iteration {at} on: the reference motion is another, {change}"
+            ));
+        }
+        if let Some(before) = &going_on.note {
+            let path = self.folder.checkpoints().path(at).join("config.toml");
+            let comment = "The configuration under which this checkpoint was trained.";
+            before.write(&path, comment)?;
+        }
+        Ok(())
+    }
+}
+
+/// Lays a preset over a configuration. A method is one of several: laid over another, it would be two.
+fn lay(config: &mut Config, preset: Config, name: &str) {
+    const METHOD: &str = "scheduler.method";
+    if let Some(method) = preset.given(METHOD) {
+        config.put(METHOD, method.clone(), &format!("preset {name}"));
+    }
+    config.merge(preset);
+}
+
+/// What changes between a checkpoint and the configuration that is asked for, which `before` was before that.
+fn going_on(
+    folder: &Folder,
+    checkpoint: &Checkpoint,
+    before: Config,
+    config: &Config,
+) -> Result<GoingOn> {
+    let iteration = checkpoint.iteration;
+    let own = checkpoint.config()?;
+    let note = own.is_none().then(|| before.clone());
+    let mut learned = own.unwrap_or(before);
+    resolve::resolve(&mut learned)
+        .with_context(|| format!("reading the configuration of checkpoint {iteration}"))?;
+    let mut phase = Ok(1);
+    let in_phase_two = || {
+        phase = phase_at(folder, iteration);
+        !matches!(phase, Ok(1))
+    };
+    let checked = resume::check(&learned, config, in_phase_two);
+    phase.context("looking for the phase of the run")?;
+    let changes = checked.map_err(|refused| usage(format!("run {}: {refused}", folder.name())))?;
+    Ok(GoingOn {
+        iteration,
+        changes,
+        note,
+    })
+}
+
+/// The phase that the metrics tell of an iteration, or of the newest before it.
+fn phase_at(folder: &Folder, iteration: u64) -> Result<u32> {
+    #[derive(Deserialize)]
+    struct Line {
+        iteration: u64,
+        // A refused iteration has none.
+        phase: Option<u32>,
+    }
+    let lines: Vec<Line> = metrics::read(&folder.metrics_path())?;
+    let told = lines.iter().filter(|line| line.iteration <= iteration);
+    Ok(told.filter_map(|line| line.phase).next_back().unwrap_or(1))
+}
+
+#[cfg(test)]
+mod tests;
