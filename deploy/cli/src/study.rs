@@ -5,6 +5,7 @@
 mod conduct;
 mod folder;
 mod group;
+mod judgement;
 mod line;
 mod plan;
 mod read;
@@ -47,7 +48,7 @@ struct RunStudy {
     /// Only these methods of the file
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     methods: Vec<String>,
-    /// Other seeds than the file's
+    /// Other seeds than the file's; runs of earlier seeds stay in the study
     #[arg(long, value_name = "N,…", value_delimiter = ',')]
     seeds: Vec<u64>,
     /// Another length of each run, in iterations
@@ -96,10 +97,9 @@ impl RunStudy {
         }
         let folder = StudyFolder::create(&self.out())?;
         let _only_one = folder.lock()?;
-        for run in &planned {
-            plan::check_unchanged(run, &folder)?;
-        }
-        folder.begin(&file, &planned)?;
+        let origin = self.file.display().to_string();
+        let all = plan::together(&file, &planned, &folder, beside, &origin)?;
+        folder.begin(&file, &planned, &all)?;
         conduct::conduct(&folder, &file, planned)
     }
 

@@ -1,11 +1,12 @@
 //! The runs that a study file asks for.
 
+use serde::{Deserialize, Serialize};
 use toml::Value;
 
 use crate::file::{Budget, StudyFile};
 
 /// A row of the tables: a preset, perhaps with some values changed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     /// Its name in runs and tables.
     pub name: String,
@@ -16,7 +17,7 @@ pub struct Entry {
 }
 
 /// One run: an entry with a seed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
     /// What is run.
     pub entry: Entry,
@@ -29,6 +30,40 @@ impl Cell {
     pub fn run_name(&self) -> String {
         format!("{}-seed{}", self.entry.name, self.seed)
     }
+}
+
+/// Runs that were asked for earlier and those that are asked for now, each once, a seed of all before the next seed.
+pub fn together(earlier: &[Cell], now: &[Cell]) -> Vec<Cell> {
+    let mut cells: Vec<Cell> = Vec::new();
+    // Where both have a run, what is asked for now is what it is.
+    for cell in earlier.iter().chain(now) {
+        match cells
+            .iter_mut()
+            .find(|known| known.run_name() == cell.run_name())
+        {
+            Some(known) => known.clone_from(cell),
+            None => cells.push(cell.clone()),
+        }
+    }
+    cells.sort_by_key(|cell| cell.seed);
+    cells
+}
+
+/// The rows of the tables that some runs fill, each once, in the order in which they first come.
+pub fn entries(cells: &[Cell]) -> Vec<Entry> {
+    let mut entries: Vec<Entry> = Vec::new();
+    for cell in cells {
+        if !entries.iter().any(|entry| entry.name == cell.entry.name) {
+            entries.push(cell.entry.clone());
+        }
+    }
+    entries
+}
+
+/// The seeds that some runs have between them, ascending.
+pub fn seeds(cells: &[Cell]) -> Vec<u64> {
+    let seeds: std::collections::BTreeSet<u64> = cells.iter().map(|cell| cell.seed).collect();
+    seeds.into_iter().collect()
 }
 
 impl Budget {
@@ -134,6 +169,40 @@ mod tests {
             names("methods = ['ampco', 'my/own.toml']\nseeds = [1, 2]"),
             ["ampco-seed1", "own-seed1", "ampco-seed2", "own-seed2"]
         );
+    }
+
+    #[test]
+    fn what_was_asked_for_earlier_stays_beside_what_is_asked_for_now() {
+        let cells = |text: &str| {
+            let text = format!("title = 't'\niterations = 5\n{text}");
+            StudyFile::parse(&text).unwrap().cells()
+        };
+        let earlier = cells("methods = ['ampco', 'amp-0.5']\nseeds = [3, 1]");
+        let now = cells("methods = ['ampco', 'adamimic']\nseeds = [1, 2]");
+        let all = together(&earlier, &now);
+        let names: Vec<String> = all.iter().map(Cell::run_name).collect();
+        assert_eq!(
+            names,
+            [
+                "ampco-seed1",
+                "amp-0.5-seed1",
+                "adamimic-seed1",
+                "ampco-seed2",
+                "adamimic-seed2",
+                "ampco-seed3",
+                "amp-0.5-seed3"
+            ]
+        );
+        let rows: Vec<String> = entries(&all).into_iter().map(|entry| entry.name).collect();
+        assert_eq!(rows, ["ampco", "amp-0.5", "adamimic"]);
+        assert_eq!(seeds(&all), [1, 2, 3]);
+        assert_eq!(together(&all, &all), all);
+        // Through JSON and back, a sweep's values included.
+        let swept = "methods = []\nseeds = [1]\n[sweep]\npreset = 'ampco'\n[sweep.values]\n\
+                     'scheduler.alpha' = [0.9, 1.0]\n'scheduler.window' = [4]\n'task.physics' = ['batched']";
+        let swept = cells(swept);
+        let json = serde_json::to_string(&swept).unwrap();
+        assert_eq!(serde_json::from_str::<Vec<Cell>>(&json).unwrap(), swept);
     }
 
     #[test]

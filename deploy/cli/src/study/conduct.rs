@@ -3,7 +3,7 @@
 mod telling;
 
 use std::collections::VecDeque;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use ::study::StudyFile;
@@ -16,6 +16,7 @@ use tokio::time::{MissedTickBehavior, interval};
 
 use super::folder::StudyFolder;
 use super::group::{self, Standing};
+use super::judgement::Judgement;
 use super::plan::Planned;
 use crate::child;
 use crate::console::Console;
@@ -237,9 +238,7 @@ impl<'a> Conductor<'a> {
             }
             Task::Judging { draft } => {
                 if status.success() {
-                    let path = draft.with_extension("json");
-                    return std::fs::rename(&draft, &path)
-                        .with_context(|| format!("renaming {}", draft.display()));
+                    return self.judged(job.run, &draft);
                 }
                 // A draft that cannot be removed is overwritten by the next attempt.
                 let _ = std::fs::remove_file(&draft);
@@ -252,7 +251,20 @@ impl<'a> Conductor<'a> {
         }
     }
 
-    /// A run whose training is done: judged, if that is asked for and was not done before.
+    /// Keeps what was found of a run.
+    fn judged(&mut self, run: usize, draft: &Path) -> Result<()> {
+        let name = &self.planned[run].name;
+        let made = self.folder.run(name)?;
+        let (Some(made), Some(evaluation)) = (made, &self.file.evaluate) else {
+            return Ok(());
+        };
+        match Judgement::keep(&made, evaluation, draft) {
+            Ok(()) => Ok(()),
+            Err(error) => self.fail(run, &format!("{error:#}")),
+        }
+    }
+
+    /// A run whose training is done: judged, if that is asked for and was not done before in the same way.
     fn finished(&mut self, run: usize) -> Result<()> {
         let name = self.planned[run].name.clone();
         self.progress[run].done = self.progress[run].of;
@@ -260,14 +272,16 @@ impl<'a> Conductor<'a> {
         let Some(folder) = self.folder.run(&name)? else {
             return Ok(());
         };
-        let path = StudyFolder::evaluation(&folder);
         let Some(evaluation) = &self.file.evaluate else {
             return Ok(());
         };
-        if path.is_file() || self.stopping {
+        // One that cannot be read is found anew like one that was found otherwise.
+        let known = Judgement::read(&folder).ok().flatten();
+        let known = known.and_then(|known| known.rows(&folder, Some(evaluation)));
+        if known.is_some() || self.stopping {
             return Ok(());
         }
-        let draft = path.with_extension("draft");
+        let draft = Judgement::path(&folder).with_extension("draft");
         match group::evaluate(&folder, evaluation, &draft, self.folder) {
             Ok(child) => {
                 let task = Task::Judging { draft };

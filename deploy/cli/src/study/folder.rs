@@ -3,6 +3,7 @@
 //! | entry | what |
 //! | --- | --- |
 //! | `study.toml` | the study as it was last asked for, options included |
+//! | `runs.json` | every run that was asked for so far |
 //! | `origin.json` | the command and the machine |
 //! | `configs/<run>.toml` | the configuration that each run is started with |
 //! | `runs/<run>/` | the runs, like any other |
@@ -13,13 +14,16 @@
 
 use std::path::{Path, PathBuf};
 
-use ::study::StudyFile;
+use ::study::{Cell, StudyFile};
 use anyhow::{Context, Result, anyhow};
 use run::{Folder, FolderError, Lock};
 use serde_json::{Value, json};
 
 use super::plan::Planned;
 use crate::failure::usage;
+
+/// Name of the file that lists the runs.
+const RUNS: &str = "runs.json";
 
 /// The folder.
 #[derive(Debug)]
@@ -78,8 +82,20 @@ impl StudyFolder {
         StudyFile::parse(&text).map_err(|error| usage(format!("{}: {error}", path.display())))
     }
 
-    /// Writes down what is asked for, with the configuration of every run.
-    pub(super) fn begin(&self, file: &StudyFile, planned: &[Planned]) -> Result<()> {
+    /// Every run that was asked for so far; in a folder of an older program, those that were asked for last.
+    pub(super) fn cells(&self) -> Result<Vec<Cell>> {
+        match self.json(RUNS)? {
+            Some(cells) => serde_json::from_value(cells)
+                .with_context(|| format!("reading {}", self.path.join(RUNS).display())),
+            None if self.path.join("study.toml").is_file() => Ok(self.file()?.cells()),
+            None => Ok(Vec::new()),
+        }
+    }
+
+    /// Writes down what is asked for: the file, the configuration of every run of it, and all runs that belong to the
+    /// study by now.
+    pub(super) fn begin(&self, file: &StudyFile, planned: &[Planned], all: &[Cell]) -> Result<()> {
+        self.write(RUNS, &format!("{:#}\n", json!(all)))?;
         self.write("study.toml", &file.to_toml())?;
         self.write("origin.json", &format!("{:#}\n", origin()))?;
         for run in planned {
@@ -149,11 +165,6 @@ impl StudyFolder {
             None => Ok(()),
         }
         .with_context(|| format!("noting the outcome of {name} in {}", path.display()))
-    }
-
-    /// What the command of a study's run left as its evaluation.
-    pub(super) fn evaluation(run: &Folder) -> PathBuf {
-        run.path().join("evaluation").join("study.json")
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ::study::{Cell, StudyFile};
+use ::study::{Cell, StudyFile, matrix};
 use anyhow::{Context, Result};
 use run::{Config, RunConfig};
 
@@ -26,7 +26,17 @@ pub(super) struct Planned {
 
 /// All runs in their order; `beside` is the folder that the file's own presets are looked for in.
 pub(super) fn plan(file: &StudyFile, beside: &Path, origin: &str) -> Result<Vec<Planned>> {
-    file.cells()
+    plan_cells(&file.cells(), file, beside, origin)
+}
+
+/// These runs, made as `file` makes its own.
+fn plan_cells(
+    cells: &[Cell],
+    file: &StudyFile,
+    beside: &Path,
+    origin: &str,
+) -> Result<Vec<Planned>> {
+    cells
         .iter()
         .map(|cell| {
             let planned = planned(file, cell, beside, origin);
@@ -67,6 +77,38 @@ fn planned(study: &StudyFile, cell: &Cell, beside: &Path, origin: &str) -> Resul
             .max(threads.unwrap_or(1).unsigned_abs() as usize),
         config,
     })
+}
+
+/// All runs that belong to the study: those that were asked for earlier and have been made, and those of `file`. Refuses
+/// `file` if any of those that are there was made with other values than it now gives.
+pub(super) fn together(
+    file: &StudyFile,
+    planned: &[Planned],
+    folder: &StudyFolder,
+    beside: &Path,
+    origin: &str,
+) -> Result<Vec<Cell>> {
+    for run in planned {
+        check_unchanged(run, folder)?;
+    }
+    let mut earlier = Vec::new();
+    for cell in folder.cells()? {
+        let now = planned.iter().any(|run| run.name == cell.run_name());
+        // Whoever removes a run's folder takes the run out of the study.
+        if now || folder.run(&cell.run_name())?.is_some() {
+            earlier.push((cell, now));
+        }
+    }
+    let not_now = earlier
+        .iter()
+        .filter(|(_, now)| !now)
+        .map(|(cell, _)| cell.clone());
+    let not_now: Vec<Cell> = not_now.collect();
+    for run in &plan_cells(&not_now, file, beside, origin)? {
+        check_unchanged(run, folder)?;
+    }
+    let earlier: Vec<Cell> = earlier.into_iter().map(|(cell, _)| cell).collect();
+    Ok(matrix::together(&earlier, &file.cells()))
 }
 
 /// Refuses to go on with a run that was made with other values: it would stand in a table beside what it is not.
@@ -185,5 +227,56 @@ mod tests {
             refused.contains("kernel = 0.125") && refused.contains("--out"),
             "{refused}"
         );
+    }
+
+    #[test]
+    fn earlier_runs_stay_in_the_study_unless_they_were_made_otherwise() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = StudyFolder::create(place.path()).unwrap();
+        let files = ours();
+        let (_, smoke) = files.iter().find(|(name, _)| name == "smoke").unwrap();
+        let here = Path::new(".");
+        // As `study run` does, up to the runs themselves.
+        let ask = |file: &StudyFile| -> Result<Vec<String>> {
+            let planned = plan(file, here, "smoke")?;
+            let all = together(file, &planned, &folder, here, "smoke")?;
+            folder.begin(file, &planned, &all)?;
+            for run in &planned {
+                let made = run::Folder::create(&folder.runs(), &run.name)?;
+                run.config.write(&made.config_path(), "a test")?;
+            }
+            Ok(all.iter().map(Cell::run_name).collect())
+        };
+        let with = |seeds: &[u64]| StudyFile {
+            methods: vec!["ampco".into()],
+            seeds: seeds.to_vec(),
+            ..smoke.clone()
+        };
+        assert_eq!(ask(&with(&[1, 2])).unwrap(), ["ampco-seed1", "ampco-seed2"]);
+        let all = ["ampco-seed1", "ampco-seed2", "ampco-seed3"];
+        assert_eq!(ask(&with(&[3])).unwrap(), all);
+        let asked: Vec<String> = folder.cells().unwrap().iter().map(Cell::run_name).collect();
+        assert_eq!(asked, all);
+        assert_eq!(
+            folder.file().unwrap().seeds,
+            [3],
+            "as it was last asked for"
+        );
+
+        // Other values would mix what does not belong together, and nothing is written.
+        let mut other = with(&[4]);
+        other.iterations = Some(other.iterations.unwrap_or(0) + 1);
+        let refused = format!("{:#}", ask(&other).unwrap_err());
+        assert!(
+            refused.contains("ampco-seed1") && refused.contains("iterations"),
+            "{refused}"
+        );
+        assert_eq!(folder.file().unwrap().seeds, [3]);
+
+        std::fs::remove_dir_all(folder.runs().join("ampco-seed2")).unwrap();
+        assert_eq!(ask(&with(&[1])).unwrap(), ["ampco-seed1", "ampco-seed3"]);
+        // A folder of an older program knows what was asked for last.
+        std::fs::remove_file(place.path().join("runs.json")).unwrap();
+        assert_eq!(ask(&with(&[5])).unwrap(), ["ampco-seed1", "ampco-seed5"]);
     }
 }

@@ -1,17 +1,22 @@
 //! From the folder of a study to what its report is made of.
 
-use ::study::{Benchmark, Judged, Measured, Record, Results, Run, State};
+use ::study::{Benchmark, Evaluation, Measured, Record, Results, Run, State, matrix};
 use anyhow::{Context, Result};
 use run::{FleetConfig, Folder, metrics};
 
 use super::folder::StudyFolder;
+use super::judgement::Judgement;
 use super::plan::target_of;
+use crate::figures::count;
 
 /// Reads every run of the study; `to_study` leads from the report to the study's folder.
 pub(super) fn results(folder: &StudyFolder, to_study: &str) -> Result<Results> {
-    let file = folder.file()?;
+    let mut file = folder.file()?;
+    let cells = folder.cells()?;
+    file.seeds = matrix::seeds(&cells);
     let mut runs = Vec::new();
-    for cell in file.cells() {
+    let mut otherwise = 0;
+    for cell in &cells {
         let name = cell.run_name();
         let mut run = Run {
             entry: cell.entry.name.clone(),
@@ -25,7 +30,8 @@ pub(super) fn results(folder: &StudyFolder, to_study: &str) -> Result<Results> {
             name,
         };
         if let Some(made) = folder.run(&run.name)? {
-            fill(&mut run, &made).with_context(|| format!("reading run {}", run.name))?;
+            let judged = fill(&mut run, &made, file.evaluate.as_ref());
+            otherwise += usize::from(judged.with_context(|| format!("reading run {}", run.name))?);
         }
         if let Some(words) = folder.failure(&run.name)
             && run.state != State::Finished
@@ -40,16 +46,16 @@ pub(super) fn results(folder: &StudyFolder, to_study: &str) -> Result<Results> {
         .transpose()
         .context("reading overhead.json")?;
     Ok(Results {
-        entries: file.entries(),
-        facts: facts(folder, &runs)?,
+        entries: matrix::entries(&cells),
+        facts: facts(folder, &runs, otherwise)?,
         file,
         runs,
         benchmark,
     })
 }
 
-/// What a run's folder tells.
-fn fill(run: &mut Run, folder: &Folder) -> Result<()> {
+/// What a run's folder tells; whether it was judged otherwise than `evaluate` asks, so that it does not count.
+fn fill(run: &mut Run, folder: &Folder, evaluate: Option<&Evaluation>) -> Result<bool> {
     let config = folder.config()?;
     let fleet: FleetConfig = config.section("fleet")?;
     run.target = target_of(&config)?;
@@ -63,20 +69,32 @@ fn fill(run: &mut Run, folder: &Folder) -> Result<()> {
     if run.state == State::Finished {
         run.measured = Measured::of(&run.records, fleet.steps as u64);
     }
-    let evaluation = StudyFolder::evaluation(folder);
-    if evaluation.is_file() {
-        let bytes = std::fs::read(&evaluation)
-            .with_context(|| format!("reading {}", evaluation.display()))?;
-        run.judged = serde_json::from_slice::<Vec<Judged>>(&bytes)
-            .with_context(|| format!("reading {}", evaluation.display()))?;
+    let there = Judgement::path(folder).is_file();
+    let rows = Judgement::read(folder)?.and_then(|judgement| judgement.rows(folder, evaluate));
+    let otherwise = there && evaluate.is_some() && rows.is_none();
+    for row in rows.into_iter().flatten() {
+        let judged = serde_json::from_value(row);
+        run.judged.push(
+            judged.with_context(|| format!("reading {}", Judgement::path(folder).display()))?,
+        );
     }
-    Ok(())
+    Ok(otherwise)
 }
 
 /// What all runs have in common, for the head of the report.
-fn facts(folder: &StudyFolder, runs: &[Run]) -> Result<Vec<(String, String)>> {
+fn facts(folder: &StudyFolder, runs: &[Run], otherwise: usize) -> Result<Vec<(String, String)>> {
     let mut facts = Vec::new();
     let mut tell = |name: &str, value: String| facts.push((name.to_owned(), value));
+    if otherwise > 0 {
+        tell(
+            "judgements left out",
+            format!(
+                "of {}, found under another [evaluate] or before it went on; `ampco study run` with their seeds and \
+                 methods finds them anew",
+                count(otherwise, "run")
+            ),
+        );
+    }
     if let Some(origin) = folder.json("origin.json")? {
         let text = |key: &str| origin[key].as_str().unwrap_or("unknown").to_owned();
         tell("command", text("command"));
@@ -134,6 +152,7 @@ fn facts(folder: &StudyFolder, runs: &[Run]) -> Result<Vec<(String, String)>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ::study::StudyFile;
     use serde_json::{Value, json};
 
     #[test]
@@ -175,5 +194,69 @@ mod tests {
             .iter()
             .find(|fact| fact.0.starts_with("transitions"));
         assert_eq!(rate.unwrap().1, "10"); // the middle of 15, 10 and 5 a second
+    }
+
+    #[test]
+    fn judgements_of_another_kind_are_left_out_and_earlier_seeds_stay() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = StudyFolder::create(place.path()).unwrap();
+        let text = |episodes: u32, seeds: &str| {
+            format!(
+                "title = 't'\nmethods = ['ampco']\nseeds = {seeds}\niterations = 1\n\
+                 [evaluate]\ncommands = [[0.5, 0.0, 0.0]]\nepisodes = {episodes}"
+            )
+        };
+        let file = |episodes, seeds| StudyFile::parse(&text(episodes, seeds)).unwrap();
+        folder
+            .begin(&file(4, "[1, 2]"), &[], &file(4, "[1, 2]").cells())
+            .unwrap();
+        for seed in [1, 2] {
+            let run = Folder::create(&folder.runs(), &format!("ampco-seed{seed}")).unwrap();
+            std::fs::write(run.config_path(), "[run]\niterations = 1").unwrap();
+            let draft = Judgement::path(&run).with_extension("draft");
+            std::fs::create_dir_all(draft.parent().unwrap()).unwrap();
+            let row = json!([{ "command": [0.5, 0.0, 0.0], "survival": 1.0, "rmse": 0.1, "energy_j": 9.0, "gait": "walk" }]);
+            std::fs::write(&draft, row.to_string()).unwrap();
+            let found = file(3 + seed, "[1]").evaluate.unwrap();
+            Judgement::keep(&run, &found, &draft).unwrap();
+        }
+        // Seed 1 was judged by four episodes, seed 2 by five.
+        let judged = |results: &Results| {
+            let runs = results.runs.iter();
+            runs.map(|run| run.judged.len()).collect::<Vec<_>>()
+        };
+        let left_out = |results: &Results| {
+            results
+                .facts
+                .iter()
+                .find(|fact| fact.0 == "judgements left out")
+                .map(|fact| fact.1.clone())
+        };
+        let first = results(&folder, "../").unwrap();
+        assert_eq!(judged(&first), [1, 0]);
+        assert!(left_out(&first).unwrap().starts_with("of 1 run,"));
+
+        let all = matrix::together(&folder.cells().unwrap(), &file(5, "[3]").cells());
+        folder.begin(&file(5, "[3]"), &[], &all).unwrap();
+        let second = results(&folder, "../").unwrap();
+        assert_eq!(judged(&second), [0, 1, 0]);
+        assert_eq!(second.file.seeds, [1, 2, 3]);
+        assert_eq!(second.entries.len(), 1);
+
+        folder
+            .write(
+                "study.toml",
+                &text(4, "[1]").replace("[evaluate]", "[evaluate]\nseconds = 2.0"),
+            )
+            .unwrap();
+        assert_eq!(judged(&results(&folder, "../").unwrap()), [0, 0, 0]);
+        let without = text(4, "[1]")
+            .split("[evaluate]")
+            .next()
+            .unwrap()
+            .to_owned();
+        folder.write("study.toml", &without).unwrap();
+        let none = results(&folder, "../").unwrap();
+        assert_eq!((judged(&none), left_out(&none)), (vec![0, 0, 0], None));
     }
 }
