@@ -46,7 +46,8 @@ pub struct ClipConfig {
     /// greater its share of the weight.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub folder: Option<PathBuf>,
-    /// Frames per second of the file or of those in the folder. Default: what they say.
+    /// Frames per second of the file or of those in the folder, which are refused if they say others.
+    /// Default: what they say.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fps: Option<f64>,
     /// Order of the quaternion in a file without header. Default: the one in which the robot stands

@@ -1,18 +1,26 @@
 //! Motion from files, on the same footing as the built-in gait.
 //!
 //! Separate because files are not to be trusted: everything is checked before it is a [`Clip`]. The
-//! way: `format.rs` tells the format, a file per format reads it, and then either the robot's rows
-//! (`resample.rs`) or a human's joints (`human.rs`, then the crate `retarget`) become 50 Hz.
+//! way: `format.rs` tells the format, a file per format reads it, `rate.rs` decides on its frames per
+//! second, and then either the robot's rows (`resample.rs`: `calibration.rs`, `lean.rs`, `bounds.rs`,
+//! `ground.rs`) or a human's joints (`human.rs`, then the crate `retarget`) become 50 Hz. What was written
+//! here before ([`crate::export`]) is taken as it is.
 
 mod amass;
 mod amc;
+mod bounds;
 mod bvh;
+mod calibration;
 mod csv;
 mod file;
 mod format;
+mod ground;
 mod human;
 mod isaac;
 mod joints;
+mod lean;
+mod leg;
+mod rate;
 mod resample;
 mod robot;
 mod upright;
@@ -32,8 +40,10 @@ use std::path::{Path, PathBuf};
 /// What a file does not say, or says wrongly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Frames per second; over what the file says.
+    /// Frames per second, where the file does not say them; a file that says others is refused.
     pub fps: Option<f64>,
+    /// Whether `fps` stands above what the file says.
+    pub force_fps: bool,
     /// The format, instead of the one that the content tells.
     pub format: Option<Format>,
     /// Order of the robot's quaternions, instead of what its posture tells.
@@ -48,6 +58,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             fps: None,
+            force_fps: false,
             format: None,
             quaternion: None,
             skeleton: None,
@@ -79,12 +90,16 @@ struct Row {
     position: Vector3<f64>,
     orientation: UnitQuaternion<f64>,
     joints: [f64; JOINTS],
+    /// Positions of [`joints::DROPPED`], rad; 0 where the file has no such joint.
+    dropped: [f64; joints::DROPPED.len()],
 }
 
 /// What a format's reader gives.
 enum Motion {
     /// The G1; its quaternions are sure, or to be decided with this as usual order.
     Robot(Vec<Row>, Sure),
+    /// The G1 as [`crate::export`] wrote it: nothing is left to do.
+    Finished(Vec<Row>),
     Human(Joints),
 }
 
@@ -123,15 +138,17 @@ pub fn import(path: &Path, options: &Options) -> Result<Imported, MotionError> {
         }
     };
     let (motion, stated) = read(&file, format, options, &mut decisions)?;
-    let fps = rate(&file, options.fps, stated)?;
+    let fps = rate::decide(&file, options, stated, &mut decisions)?;
     let (frames, clip, retargeting) = match motion {
         Motion::Robot(rows, sure) => {
             let rows = oriented(&file, rows, sure, fps, options, &mut decisions)?;
-            (
-                rows.len(),
-                resample::clip(&file, &rows, fps, options.ground)?,
-                None,
-            )
+            let clip = resample::clip(&file, &rows, fps, options.ground, &mut decisions)?;
+            (rows.len(), clip, None)
+        }
+        Motion::Finished(rows) => {
+            resample::check_duration(&file, rows.len(), fps)?;
+            decisions.push("written by ampco: taken as it is".into());
+            (rows.len(), resample::finished(path, &rows), None)
         }
         Motion::Human(joints) => {
             resample::check_duration(&file, joints.frames.len(), fps)?;
@@ -171,22 +188,24 @@ fn read(
         }
         Format::Amc => {
             let joints = amc::read(file, options.skeleton.as_deref(), decisions)?;
+            // The format has no place for a rate: the user's word contradicts nothing.
             if options.fps.is_none() {
                 decisions.push(format!(
                     "{} frames a second, as in the CMU collection",
                     amc::USUAL_FPS
                 ));
             }
-            (Motion::Human(joints), Some(amc::USUAL_FPS))
+            (Motion::Human(joints), options.fps.or(Some(amc::USUAL_FPS)))
         }
         Format::Csv => {
             let table = csv::parse(file)?;
-            let sure = if table.named {
-                Sure::Yes
-            } else {
-                Sure::No { usual: None }
+            let fps = table.fps(file, options)?;
+            let motion = match (table.ours, table.named) {
+                (true, _) if !options.force_fps => Motion::Finished(table.rows),
+                (_, true) => Motion::Robot(table.rows, Sure::Yes),
+                (_, false) => Motion::Robot(table.rows, Sure::No { usual: None }),
             };
-            (Motion::Robot(table.rows, sure), table.fps)
+            (motion, fps)
         }
         Format::BeyondMimic => {
             let (rows, fps) = robot::beyond_mimic(file, decisions)?;
@@ -203,21 +222,6 @@ fn read(
             (Motion::Robot(rows, Sure::No { usual }), fps)
         }
     })
-}
-
-/// The file's rate, or the one that the user gives.
-fn rate(file: &File<'_>, given: Option<f64>, stated: Option<f64>) -> Result<f64, MotionError> {
-    match given.or(stated) {
-        Some(fps) if (1.0..=10_000.0).contains(&fps) => Ok(fps),
-        Some(fps) => Err(file.unusable(
-            &format!("has a rate of {fps} frames a second"),
-            "give one from 1 to 10000: fps = …, on the command line --fps",
-        )),
-        None => Err(file.unusable(
-            "does not say its frames per second",
-            "say them: fps = 30, on the command line --fps 30 (Unitree's tables have 30)",
-        )),
-    }
 }
 
 /// Rows with their quaternions in the right order.
@@ -251,6 +255,7 @@ fn row(posture: &retarget::Posture) -> Row {
         position: posture.base.translation.vector,
         orientation: posture.base.rotation,
         joints: posture.joints,
+        dropped: [0.0; joints::DROPPED.len()],
     }
 }
 

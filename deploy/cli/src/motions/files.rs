@@ -30,9 +30,12 @@ pub(super) struct Sources {
     /// Format, instead of the one that the content tells
     #[arg(long)]
     format: Option<Format>,
-    /// Frames per second, over what the file says
+    /// Frames per second of files that do not say them; a file that says others is refused
     #[arg(long)]
     fps: Option<f64>,
+    /// Let --fps stand above what the files say
+    #[arg(long, requires = "fps")]
+    force_fps: bool,
     /// Order of the robot's quaternions (wxyz or xyzw), instead of what its posture tells
     #[arg(long)]
     quaternion: Option<QuaternionOrder>,
@@ -121,6 +124,7 @@ impl Sources {
     fn options(&self) -> Options {
         Options {
             fps: self.fps,
+            force_fps: self.force_fps,
             format: self.format,
             quaternion: self.quaternion,
             skeleton: self.skeleton.clone(),

@@ -3,19 +3,24 @@
 //! Separate because its one subject is what can be wrong with a file that a person made.
 //!
 //! Columns: x y z (m), quaternion, joints (rad). With a header they are found by name in any order
-//! (`x y z qw qx qy qz` and joint names with or without `_joint`; the six joints that only the
-//! 29-joint robot has are passed over; `time` in s or a counting `frame` is checked to be even).
+//! (`x y z qw qx qy qz` and joint names with or without `_joint`, the six that only the 29-joint robot
+//! has among them; `time` in s or a counting `frame` is checked to be even).
 //! Without one there are 30 columns in robot order, or 36 in the order of the 29-joint robot. BONES-SEED
 //! tables (`root_translateX` in cm, `root_rotateX` and joints in degrees) are known by their header. A
 //! comment `# fps = 50` says the rate.
 
 mod layout;
+mod rate;
 
-use super::Row;
 use super::file::File;
+use super::joints::DROPPED;
+use super::{Options, Row};
+use crate::clip::FRAME_SECONDS;
 use crate::error::MotionError;
+use crate::export;
 use layout::{FIELDS, Layout};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use rate::Stated;
 use std::path::Path;
 
 /// What a file holds.
@@ -25,8 +30,25 @@ pub(super) struct Table {
     pub(super) rows: Vec<Row>,
     /// Whether a header names the columns.
     pub(super) named: bool,
+    /// Whether it is a table as [`export`] writes them.
+    pub(super) ours: bool,
+    /// The rates that it states.
+    stated: Vec<Stated>,
+}
+
+impl Table {
     /// Frames per second, if the file says them.
-    pub(super) fps: Option<f64>,
+    ///
+    /// # Errors
+    /// If it says two that differ, and the user none above them.
+    pub(super) fn fps(
+        &self,
+        file: &File<'_>,
+        options: &Options,
+    ) -> Result<Option<f64>, MotionError> {
+        let above = options.fps.filter(|_| options.force_fps);
+        rate::one(file, &self.stated, above)
+    }
 }
 
 /// Reads a table.
@@ -43,7 +65,7 @@ pub(super) fn parse(file: &File<'_>) -> Result<Table, MotionError> {
         })
         .filter(|line| !line.text.trim().is_empty() && !line.text.trim_start().starts_with('#'))
         .peekable();
-    let Some(first) = lines.peek() else {
+    let Some(&first) = lines.peek() else {
         return Err(file.unusable("holds no frames", "export the motion again"));
     };
     let named = first.is_header();
@@ -63,45 +85,19 @@ pub(super) fn parse(file: &File<'_>) -> Result<Table, MotionError> {
     if rows.is_empty() {
         return Err(file.unusable("holds no frames", "export the motion again"));
     }
-    let step = even_step(&times)?;
-    let timed = step.filter(|_| layout.in_seconds).map(|step| 1.0 / step);
+    let mut stated = rate::in_comments(file, text)?;
+    let as_written = [1.0 / FRAME_SECONDS];
+    let ours = export::is_marked(text)
+        && first.text == export::header()
+        && stated.iter().map(|stated| stated.fps).eq(as_written);
+    let timed = rate::of_times(&times, layout.time.unwrap_or(0))?;
+    stated.extend(timed.filter(|_| layout.in_seconds));
     Ok(Table {
         rows,
         named,
-        fps: stated_fps(text).or(timed),
+        ours,
+        stated,
     })
-}
-
-/// The rate that a comment states.
-fn stated_fps(text: &str) -> Option<f64> {
-    text.lines()
-        .filter_map(|line| line.trim().strip_prefix('#')?.trim().strip_prefix("fps"))
-        .find_map(|rest| rest.trim_start_matches([' ', '=', ':']).trim().parse().ok())
-}
-
-/// The step between times, which must be the same everywhere.
-fn even_step(times: &[(Line<'_>, f64)]) -> Result<Option<f64>, MotionError> {
-    let steps: Vec<f64> = times.windows(2).map(|pair| pair[1].1 - pair[0].1).collect();
-    if steps.is_empty() {
-        return Ok(None);
-    }
-    let usual = retarget::signal::median(&mut steps.clone());
-    let uneven = steps
-        .iter()
-        .position(|step| (step - usual).abs() > 0.02 * usual.abs() || *step <= 0.0);
-    if let Some(i) = uneven {
-        let (line, time) = &times[i + 1];
-        let problem = format!(
-            "time {time} comes {:.6} after the line before, {usual:.6} elsewhere",
-            steps[i]
-        );
-        return Err(line.error(
-            None,
-            problem,
-            "frames must be evenly spaced; resample or cut the file",
-        ));
-    }
-    Ok(Some(usual))
 }
 
 #[derive(Clone, Copy)]
@@ -153,29 +149,45 @@ impl<'a> Line<'a> {
                 "it must have length 1; check the columns",
             ));
         }
+        let mut dropped = [0.0; DROPPED.len()];
+        for (angle, column) in dropped.iter_mut().zip(layout.dropped) {
+            if let Some(column) = column {
+                *angle = self.angle(&cells, layout, column)?;
+            }
+        }
         let row = Row {
             position: Vector3::new(x, y, z),
-            orientation: UnitQuaternion::from_quaternion(quaternion),
+            // What seven digits leave of a unit is one: dividing it would change the seventh.
+            orientation: if (quaternion.norm() - 1.0).abs() < 1e-6 {
+                UnitQuaternion::new_unchecked(quaternion)
+            } else {
+                UnitQuaternion::from_quaternion(quaternion)
+            },
             joints: std::array::from_fn(|j| value[7 + j]),
+            dropped,
         };
         Ok((row, time))
     }
 
     fn number(&self, cells: &[&str], layout: &Layout, field: usize) -> Result<f64, MotionError> {
         let column = layout.column[field];
-        let number = self.finite(cells[column], column)? * layout.scale(field);
-        let fail = |problem: String, remedy: &str| self.error(Some(column + 1), problem, remedy);
-        if field < 3 && number.abs() > 1e4 {
-            return Err(fail(
-                format!("a place {number} m away"),
-                "places are in metres",
-            ));
+        if field >= 7 {
+            return self.angle(cells, layout, column);
         }
-        if field >= 7 && number.abs() > 10.0 {
-            return Err(fail(
-                format!("a joint at {number} rad"),
-                "joints are in radians",
-            ));
+        let number = self.finite(cells[column], column)? * layout.scale(field);
+        if field < 3 && number.abs() > 1e4 {
+            let problem = format!("a place {number} m away");
+            return Err(self.error(Some(column + 1), problem, "places are in metres"));
+        }
+        Ok(number)
+    }
+
+    /// A joint's position, rad.
+    fn angle(&self, cells: &[&str], layout: &Layout, column: usize) -> Result<f64, MotionError> {
+        let number = self.finite(cells[column], column)? * layout.scale(FIELDS);
+        if number.abs() > 10.0 {
+            let problem = format!("a joint at {number} rad");
+            return Err(self.error(Some(column + 1), problem, "joints are in radians"));
         }
         Ok(number)
     }

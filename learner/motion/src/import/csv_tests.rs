@@ -40,6 +40,9 @@ fn the_29_joint_robot_loses_six_joints() {
     assert_eq!(rows[0].joints[12..15], [0.12, 0.15, 0.16]);
     assert_eq!(rows[0].joints[17..19], [0.19, 0.22]);
     assert_eq!(rows[0].joints[22], 0.26);
+    // Waist roll and pitch, then pitch and yaw of the wrists, are kept apart.
+    assert_eq!(rows[0].dropped, [0.13, 0.14, 0.20, 0.21, 0.27, 0.28]);
+    assert_eq!(read(&line(23)).unwrap()[0].dropped, [0.0; 6]);
 }
 
 #[test]
@@ -65,7 +68,9 @@ fn a_header_maps_columns_by_name_whatever_the_order_and_line_ends() {
         names.join(", "),
         values.join(" , ")
     );
-    let rows = read(&text).unwrap();
+    let mut rows = read(&text).unwrap();
+    assert_eq!(rows[0].dropped, [9.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    rows[0].dropped = [0.0; 6];
     assert_eq!(rows, read(&line(23)).unwrap());
 }
 
@@ -145,36 +150,8 @@ fn errors_name_file_line_column_and_remedy() {
     }
 }
 
-fn header() -> String {
-    format!(
-        "{},{}",
-        BASE.join(","),
-        JOINT_TABLE.map(|joint| joint.name).join(",")
-    )
-}
-
-#[test]
-fn the_rate_is_in_a_comment_or_in_times() {
-    let stated = table(&format!("# a walk\n# fps = 60\n{}", line(23))).unwrap();
-    assert_eq!((stated.fps, stated.named), (Some(60.0), false));
-    let timed = |times: [f64; 4]| {
-        let rows = times.map(|t| format!("{t},{}", line(23)));
-        table(&format!("time,{}\n{}", header(), rows.concat()))
-    };
-    let even = timed([1.0, 1.02, 1.04, 1.06]).unwrap();
-    assert!((even.fps.unwrap() - 50.0).abs() < 1e-6 && even.named);
-    let message = timed([1.0, 1.02, 1.08, 1.10]).unwrap_err();
-    for part in ["line 4", "1.08", "0.060000", "evenly"] {
-        assert!(message.contains(part), "{message}");
-    }
-    // A counter says nothing of the rate, but a gap in it is one.
-    let counted = |frames: [u32; 4]| {
-        let rows = frames.map(|f| format!("{f},{}", line(23)));
-        table(&format!("Frame,{}\n{}", header(), rows.concat()))
-    };
-    assert_eq!(counted([0, 1, 2, 3]).unwrap().fps, None);
-    assert!(counted([0, 1, 2, 5]).unwrap_err().contains("line 5"));
-}
+#[path = "csv_rate_tests.rs"]
+mod rates;
 
 #[test]
 fn centimetres_and_degrees_are_known_by_their_header() {

@@ -4,6 +4,7 @@
 //! nor what their unit is; both are told from the body itself, and shown.
 
 use super::file::File;
+use super::{calibration, resample};
 use crate::error::MotionError;
 use nalgebra::{Point3, Vector3};
 use retarget::{Capture, LANDMARKS, Landmark, Landmarks, Side};
@@ -86,6 +87,9 @@ pub(super) fn capture(
     let mut capture = Capture { fps, frames };
     stand_up(file, &mut capture, decisions)?;
     to_metres(file, &mut capture, decisions)?;
+    let pose = calibration::of_human(&capture, decisions);
+    capture.frames.drain(..pose);
+    resample::check_duration(file, capture.frames.len(), fps)?;
     Ok(capture)
 }
 

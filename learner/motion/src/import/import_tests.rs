@@ -95,6 +95,74 @@ fn every_format_becomes_a_clip_by_its_content() {
 }
 
 #[test]
+fn a_rate_against_the_files_own_is_refused_in_every_format_that_states_one() {
+    for (name, bytes) in [
+        ("a.npz", amass::tests::standing(60, 156)),
+        ("b.bvh", bvh::tests::sliding(30).into_bytes()),
+        ("c.npz", robot::tests::beyond_mimic_file(&joints::SDK_29)),
+        ("d.npz", isaac::tests::lab_file(60)),
+        ("e.npy", isaac::tests::gym_file(60)),
+        ("f.pkl", robot::tests::gmr_file(29)),
+        (
+            "g.csv",
+            crate::export::to_csv(&gait::walk(1.0).unwrap(), &[]).into_bytes(),
+        ),
+    ] {
+        let own = told(name, &bytes).fps;
+        let mut options = Options {
+            fps: Some(2.0 * own),
+            ..Options::default()
+        };
+        let message = imported(name, &bytes, &options).unwrap_err();
+        for part in [name, "2.00 times as fast", "--force-fps"] {
+            assert!(message.contains(part), "{part:?} is not in {message:?}");
+        }
+        options.force_fps = true;
+        let forced = imported(name, &bytes, &options).unwrap();
+        assert!((forced.fps - 2.0 * own).abs() < 1e-9, "{name}");
+        let said = |d: &String| d.contains("by --force-fps");
+        assert!(forced.decisions.iter().any(said), "{:?}", forced.decisions);
+        options = Options {
+            fps: Some(own),
+            ..Options::default()
+        };
+        assert_eq!(imported(name, &bytes, &options).unwrap().fps, own);
+    }
+    // Acclaim's format has no place for a rate: 60 is news, not a contradiction.
+    let options = Options {
+        fps: Some(60.0),
+        ..Options::default()
+    };
+    let motion = amc::tests::motion(60).into_bytes();
+    assert_eq!(imported("02_01.amc", &motion, &options).unwrap().fps, 60.0);
+}
+
+#[test]
+fn a_bow_of_the_larger_robot_is_a_bow_of_this_one() {
+    // Standing for 1 s with the waist pitched by 0.2 rad (11°): x y z, qw qx qy qz, 29 joints.
+    let pose: Vec<String> = joints::SDK_29
+        .iter()
+        .map(|name| match joints::ours().iter().position(|n| n == name) {
+            Some(j) => g1::DEFAULT_POSE[j].to_string(),
+            None if *name == "waist_pitch" => "0.2".into(),
+            None => "0".into(),
+        })
+        .collect();
+    let row = format!("0,0,0.8,1,0,0,0,{}\n", pose.join(","));
+    let options = Options {
+        fps: Some(30.0),
+        ..Options::default()
+    };
+    let result = imported("bow.csv", row.repeat(31).as_bytes(), &options).unwrap();
+    let (_, pitch, _) = result.clip.frames[25].orientation.euler_angles();
+    assert!((pitch - 0.2).abs() < 1e-5, "{pitch}");
+    // The hips' own −0.1 and the bow's −0.2.
+    assert!((result.clip.frames[25].joint_positions[0] + 0.3).abs() < 1e-5);
+    let said = |d: &String| d.starts_with("waist_pitch (11°): this robot has no such joint");
+    assert!(result.decisions.iter().any(said), "{:?}", result.decisions);
+}
+
+#[test]
 fn gmr_quaternions_are_read_with_the_scalar_last() {
     let walk = gait::walk(1.0).unwrap();
     let result = told("walk.pkl", &robot::tests::gmr_file(23));

@@ -11,6 +11,7 @@ use super::file::npz::Archive;
 use super::file::pickle::Pickle;
 use super::human::Joints;
 use super::joints::{self, Table};
+use super::lean;
 use crate::config::QuaternionOrder;
 use crate::error::MotionError;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
@@ -67,6 +68,7 @@ pub(super) fn lab(
             columns,
         };
         decisions.push(format!("a G1 with {} joints, by name", dofs.len()));
+        lean::say_others(&table.others(), decisions);
         return Ok((Lab::Robot(table.rows(file, QuaternionOrder::Wxyz)?), fps));
     }
     decisions.push(format!("a humanoid of {} bodies, by name", bodies.len()));

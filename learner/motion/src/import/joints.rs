@@ -103,7 +103,7 @@ pub(super) const ISAAC_23: [&str; 23] = [
     "right_wrist_roll",
 ];
 
-/// The joints that the robot with 23 lacks.
+/// The joints that the robot with 23 lacks; those of the waist first.
 pub(super) const DROPPED: [&str; 6] = [
     "waist_roll",
     "waist_pitch",
@@ -124,14 +124,32 @@ pub(super) fn ours() -> [&'static str; JOINTS] {
     JOINT_TABLE.map(|joint| short(joint.name))
 }
 
-/// The column of each of our joints among named columns; the name of the first that is missing.
-pub(super) fn columns(names: &[&str]) -> Result<[usize; JOINTS], &'static str> {
+/// Which of a file's columns of joints is which.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Columns {
+    /// The column of each of our joints.
+    pub(super) ours: [usize; JOINTS],
+    /// The column of each of [`DROPPED`], if it is there.
+    pub(super) dropped: [Option<usize>; DROPPED.len()],
+    /// All other columns and their names: fingers, a head, or something misspelt.
+    pub(super) others: Vec<(String, usize)>,
+}
+
+/// The columns of joints among named ones; the name of the first of ours that is missing.
+pub(super) fn columns(names: &[&str]) -> Result<Columns, &'static str> {
+    let find = |wanted: &str| names.iter().position(|name| short(name) == wanted);
     let mut columns = [0; JOINTS];
     for (column, wanted) in columns.iter_mut().zip(ours()) {
-        let found = names.iter().position(|name| short(name) == wanted);
-        *column = found.ok_or(wanted)?;
+        *column = find(wanted).ok_or(wanted)?;
     }
-    Ok(columns)
+    let dropped = DROPPED.map(find);
+    let known = |column: &usize| columns.contains(column) || dropped.contains(&Some(*column));
+    let others = (0..names.len()).filter(|column| !known(column));
+    Ok(Columns {
+        ours: columns,
+        dropped,
+        others: others.map(|i| (short(names[i]).to_owned(), i)).collect(),
+    })
 }
 
 /// Arrays of robot motion and the names that errors give them.
@@ -139,8 +157,8 @@ pub(super) struct Table<'a> {
     pub(super) position: (&'a Array, &'a str),
     pub(super) orientation: (&'a Array, &'a str),
     pub(super) joints: (&'a Array, &'a str),
-    /// Which column of `joints` each of ours is.
-    pub(super) columns: [usize; JOINTS],
+    /// Which column of `joints` is which joint.
+    pub(super) columns: Columns,
 }
 
 impl Table<'_> {
@@ -164,9 +182,24 @@ impl Table<'_> {
                 Ok(Row {
                     position: Vector3::from_column_slice(p.frame(i)),
                     orientation: UnitQuaternion::from_quaternion(quaternion),
-                    joints: self.columns.map(|column| j.frame(i)[column]),
+                    joints: self.columns.ours.map(|column| j.frame(i)[column]),
+                    dropped: (self.columns.dropped)
+                        .map(|column| column.map_or(0.0, |column| j.frame(i)[column])),
                 })
             })
+            .collect()
+    }
+
+    /// Names of the file's joints that no G1 has, and how far they get from 0, rad.
+    pub(super) fn others(&self) -> Vec<(String, f64)> {
+        let angles = self.joints.0;
+        let reach = |column: usize| {
+            let angles = (0..angles.frames()).map(|i| angles.frame(i)[column].abs());
+            angles.fold(0.0, f64::max)
+        };
+        let others = self.columns.others.iter();
+        others
+            .map(|(name, column)| (name.clone(), reach(*column)))
             .collect()
     }
 }
@@ -206,9 +239,14 @@ mod tests {
     fn every_order_holds_every_joint_once() {
         for names in [&SDK_29[..], &ISAAC_29, &ISAAC_23, &ours()] {
             let columns = columns(names).unwrap();
-            for (column, ours) in columns.iter().zip(ours()) {
+            for (column, ours) in columns.ours.iter().zip(ours()) {
                 assert_eq!(names[*column], ours);
             }
+            for (column, dropped) in columns.dropped.iter().zip(DROPPED) {
+                let name = column.map(|column| names[column]);
+                assert_eq!(name, Some(dropped).filter(|_| names.len() == 29));
+            }
+            assert!(columns.others.is_empty());
             let mut sorted = names.to_vec();
             sorted.sort_unstable();
             sorted.dedup();
@@ -228,7 +266,10 @@ mod tests {
         assert_eq!(short("left_knee_joint_dof"), "left_knee");
         let names: Vec<String> = SDK_29.iter().map(|n| format!("{n}_joint")).collect();
         let mut names: Vec<&str> = names.iter().map(String::as_str).collect();
-        assert_eq!(columns(&names).unwrap()[12], 12);
+        assert_eq!(columns(&names).unwrap().ours[12], 12);
+        names.push("left_thumb_joint");
+        let others = columns(&names).unwrap().others;
+        assert_eq!(others, [("left_thumb".to_owned(), 29)]);
         names.retain(|name| *name != "left_knee_joint");
         assert_eq!(columns(&names), Err("left_knee"));
     }

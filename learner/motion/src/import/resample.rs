@@ -1,28 +1,33 @@
-//! Brings rows of any rate to 50 Hz, puts the feet on the ground and differentiates.
+//! Brings a robot's rows of any rate to 50 Hz, makes them this robot's, and differentiates.
 //!
 //! Separate from reading because it is geometry: whatever the format, motion passes here.
 
-use super::Row;
 use super::file::File;
+use super::joints::DROPPED;
+use super::{Row, bounds, calibration, ground, lean};
 use crate::clip::{Clip, FRAME_SECONDS};
 use crate::error::MotionError;
-use g1::kinematics::{forward, lowest_foot_point};
 use g1::{JOINTS, RobotState};
-use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use retarget::signal;
 use std::path::Path;
 
-/// The clip of a robot's rows at some rate, named after the file.
+/// The clip of a robot's rows at some rate, named after the file; adds what was done to `decisions`.
 pub(super) fn clip(
     file: &File<'_>,
     rows: &[Row],
     fps: f64,
-    ground: bool,
+    on_ground: bool,
+    decisions: &mut Vec<String>,
 ) -> Result<Clip, MotionError> {
     check_duration(file, rows.len(), fps)?;
+    let rows = &rows[calibration::of_robot(rows, fps, decisions)..];
+    check_duration(file, rows.len(), fps)?;
     let mut frames = resampled(rows, fps);
-    if ground {
-        put_on_ground(&mut frames);
+    lean::into_pelvis(&mut frames, decisions);
+    bounds::hold(&mut frames, decisions);
+    if on_ground {
+        ground::put(&mut frames, decisions);
     }
     Ok(finished(file.path, &frames))
 }
@@ -39,7 +44,7 @@ pub(super) fn check_duration(file: &File<'_>, frames: usize, fps: f64) -> Result
     ))
 }
 
-/// The clip of rows at 50 Hz whose feet are on the ground.
+/// The clip of rows at 50 Hz that need nothing done.
 pub(super) fn finished(path: &Path, rows: &[Row]) -> Clip {
     let frames = with_velocities(rows);
     let name = path
@@ -70,6 +75,8 @@ fn resampled(rows: &[Row], fps: f64) -> Vec<Row> {
     let turns = same_sign(rows);
     let turns: [Vec<f64>; 4] = std::array::from_fn(|part| series(&|i| turns[i].coords[part]));
     let joints: [Vec<f64>; JOINTS] = std::array::from_fn(|j| series(&|i| rows[i].joints[j]));
+    let dropped: [Vec<f64>; DROPPED.len()] =
+        std::array::from_fn(|j| series(&|i| rows[i].dropped[j]));
     (0..count)
         .map(|k| {
             let turn =
@@ -81,6 +88,7 @@ fn resampled(rows: &[Row], fps: f64) -> Vec<Row> {
                 orientation: UnitQuaternion::try_new(turn, 0.5)
                     .unwrap_or(rows[nearest].orientation),
                 joints: std::array::from_fn(|j| joints[j][k]),
+                dropped: std::array::from_fn(|j| dropped[j][k]),
             }
         })
         .collect()
@@ -98,32 +106,6 @@ fn same_sign(rows: &[Row]) -> Vec<Quaternion<f64>> {
         }
     }
     turns
-}
-
-/// Moves the whole motion so that the lowest tenth of its frames touches the ground, then lifts
-/// what still sinks, smoothly. One shift for all keeps the flight of a run.
-fn put_on_ground(rows: &mut [Row]) {
-    let lowest = |row: &Row| {
-        let base = Isometry3::from_parts(row.position.into(), row.orientation);
-        lowest_foot_point(&forward(&base, &row.joints))
-    };
-    let mut heights: Vec<f64> = rows.iter().map(lowest).collect();
-    let mut sorted = heights.clone();
-    sorted.sort_by(f64::total_cmp);
-    let shift = sorted[sorted.len() / 10];
-    for (row, height) in rows.iter_mut().zip(&mut heights) {
-        row.position.z -= shift;
-        *height -= shift;
-    }
-    // The greatest sinking within two frames, averaged over two frames: never less than a frame's
-    // own, since each of the averaged maxima sees it.
-    let window = |i: usize| i.saturating_sub(2)..(i + 3).min(heights.len());
-    let sinking = |i: usize| window(i).map(|j| -heights[j]).fold(0.0, f64::max);
-    for (i, row) in rows.iter_mut().enumerate() {
-        let around = window(i);
-        let count = around.len() as f64;
-        row.position.z += around.map(sinking).sum::<f64>() / count;
-    }
 }
 
 /// Central differences; one-sided at the ends.

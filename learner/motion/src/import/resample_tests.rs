@@ -3,7 +3,7 @@
 use super::*;
 use crate::gait;
 use crate::import::{Options, load};
-use g1::kinematics::forward_state;
+use g1::kinematics::{forward_state, lowest_foot_point};
 use g1::state::STANDING_HEIGHT;
 use g1::{DEFAULT_POSE, JOINT_TABLE};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -21,7 +21,7 @@ fn clip_of(rows: &[Row], name: &str, fps: f64, ground: bool) -> Result<Clip, Mot
         path: Path::new(name),
         bytes: b"",
     };
-    clip(&file, rows, fps, ground)
+    clip(&file, rows, fps, ground, &mut Vec::new())
 }
 
 /// Turning left at 0.5 rad/s on a circle at 1 m/s, left knee opening at 2 rad/s, 7 cm too low.
@@ -36,6 +36,7 @@ fn circling(fps: f64, seconds: f64) -> Vec<Row> {
             position: Vector3::new(2.0 * sin, 2.0 - 2.0 * cos, STANDING_HEIGHT - 0.07),
             orientation: UnitQuaternion::from_euler_angles(0.0, 0.0, 0.5 * time),
             joints,
+            dropped: [0.0; 6],
         }
     };
     (0..count).map(row).collect()
@@ -80,10 +81,39 @@ fn grounding_keeps_flight_and_lifts_what_sinks() {
     assert!((height(25) - 0.2).abs() < 1e-4);
     assert!((height(10)).abs() < 1e-4);
     for i in 0..clip.frames.len() {
-        assert!(height(i) > -1e-5, "frame {i} at {}", height(i));
+        // 3 mm below the ground are on it.
+        assert!(height(i) > -0.003 - 1e-5, "frame {i} at {}", height(i));
     }
     let raw = clip_of(&rows, "jump.csv", 50.0, false).unwrap();
     assert!((raw.frames[0].position.z - (STANDING_HEIGHT - 0.07) as f32).abs() < 1e-6);
+}
+
+#[test]
+fn a_spline_leaves_no_limit_and_no_speed_behind() {
+    // An ankle at its stop for a while and then away from it: between rows at 30 Hz the spline shoots
+    // over the stop. A knee from 0 to 2.8 rad between two rows: 84 rad/s of 20.
+    let mut rows = circling(30.0, 1.0);
+    let stop = JOINT_TABLE[5].upper;
+    for (i, row) in rows.iter_mut().enumerate() {
+        row.joints[5] = if (8..14).contains(&i) { stop } else { -0.1 };
+        row.joints[3] = if i < 15 { 0.0 } else { 2.8 };
+    }
+    let raw = resampled(&rows, 30.0);
+    assert!(raw.iter().any(|row| row.joints[5] > stop + 0.01));
+    let clip = clip_of(&rows, "stop.csv", 30.0, true).unwrap();
+    for frame in &clip.frames {
+        for (j, joint) in JOINT_TABLE.iter().enumerate() {
+            let q = f64::from(frame.joint_positions[j]);
+            assert!((joint.lower..=joint.upper).contains(&q), "{}", joint.name);
+            let speed = f64::from(frame.joint_velocities[j]).abs();
+            assert!(speed <= joint.velocity_limit, "{} {speed}", joint.name);
+        }
+    }
+    for pair in clip.frames.windows(2) {
+        let step = pair[1].joint_positions[3] - pair[0].joint_positions[3];
+        assert!(step.abs() <= 20.0 * 0.02, "{step}");
+    }
+    assert!((clip.frames[50].joint_positions[3] - 2.8).abs() < 1e-3);
 }
 
 #[test]

@@ -10,6 +10,7 @@ use super::file::array::{Array, PLACES};
 use super::file::npz::Archive;
 use super::file::pickle::Pickle;
 use super::joints::{self, ISAAC_23, ISAAC_29, SDK_29, Table};
+use super::lean;
 use crate::config::QuaternionOrder;
 use crate::error::MotionError;
 use g1::kinematics::forward;
@@ -44,26 +45,27 @@ pub(super) fn beyond_mimic(
             .expect("a part of each frame")
     };
     let (pelvis, turn) = (first(&places, 3), first(&turns, 4));
-    let rows = |names: &[&str]| {
+    let table = |names: &[&str]| {
         let columns = joints::columns(names).map_err(|missing| {
             file.unusable(
                 &format!("names no joint {missing}"),
                 "expected the joints of the G1",
             )
         })?;
-        let table = Table {
+        Ok(Table {
             position: (&pelvis, "body_pos_w"),
             orientation: (&turn, "body_quat_w"),
             joints: (&angles, "joint_pos"),
             columns,
-        };
-        table.rows(file, QuaternionOrder::Wxyz)
+        })
     };
     if let Some(names) = archive.words("joint_names")? {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         if names.len() == angles.width() {
             decisions.push("joints by the file's names".into());
-            return Ok((rows(&names)?, fps));
+            let table = table(&names)?;
+            lean::say_others(&table.others(), decisions);
+            return Ok((table.rows(file, QuaternionOrder::Wxyz)?, fps));
         }
     }
     let ours = joints::ours();
@@ -78,7 +80,7 @@ pub(super) fn beyond_mimic(
     let mut best: Option<(f64, &str, Vec<Row>)> = None;
     let mut told = Vec::new();
     for (name, names) in orders {
-        let rows = rows(names)?;
+        let rows = table(names)?.rows(file, QuaternionOrder::Wxyz)?;
         let gap = feet_gap(&rows, &places, names);
         told.push(format!("{:.1} cm in {name}", 100.0 * gap));
         if best.as_ref().is_none_or(|(least, ..)| gap < *least) {

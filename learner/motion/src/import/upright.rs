@@ -103,6 +103,7 @@ mod tests {
             position: turn * frame.position.cast(),
             orientation: turn * frame.orientation.cast(),
             joints: frame.joint_positions.map(f64::from),
+            dropped: [0.0; 6],
         };
         walk.frames.iter().map(row).collect()
     }

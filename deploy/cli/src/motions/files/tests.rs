@@ -7,6 +7,7 @@ fn sources(paths: Vec<PathBuf>) -> Sources {
         paths,
         format: None,
         fps: None,
+        force_fps: false,
         quaternion: None,
         skeleton: None,
         no_ground: false,

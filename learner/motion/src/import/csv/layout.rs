@@ -24,6 +24,8 @@ const BONES_BASE: [&str; 6] = [
 #[derive(Debug)]
 pub(super) struct Layout {
     pub(super) column: [usize; FIELDS],
+    /// The columns of the joints that only the 29-joint robot has, as far as they are there.
+    pub(super) dropped: [Option<usize>; DROPPED.len()],
     pub(super) width: usize,
     /// The column that counts time or frames.
     pub(super) time: Option<usize>,
@@ -47,9 +49,9 @@ impl Line<'_> {
     /// The layout of a table without header, of which this is the first line.
     pub(super) fn plain_layout(&self) -> Result<Layout, MotionError> {
         let width = self.cells().count();
-        let kept = match width {
-            30 => std::array::from_fn(|joint| joint),
-            36 => joints::columns(&SDK_29).expect("the SDK's order has all joints"),
+        let names: &[&str] = match width {
+            30 => &joints::ours(),
+            36 => &SDK_29,
             _ => {
                 return Err(self.error(
                     None,
@@ -59,8 +61,10 @@ impl Line<'_> {
                 ));
             }
         };
+        let kept = joints::columns(names).expect("known orders have all joints");
         Ok(Layout {
-            column: std::array::from_fn(|i| if i < 7 { i } else { 7 + kept[i - 7] }),
+            column: std::array::from_fn(|i| if i < 7 { i } else { 7 + kept.ours[i - 7] }),
+            dropped: kept.dropped.map(|column| column.map(|column| 7 + column)),
             width,
             time: None,
             in_seconds: false,
@@ -75,21 +79,24 @@ impl Line<'_> {
         let base: &[&str] = if euler { &BONES_BASE } else { &BASE };
         let ours = joints::ours();
         let mut column = [None; FIELDS];
+        let mut dropped = [None; DROPPED.len()];
         let (mut time, mut in_seconds) = (None, false);
         for (i, &name) in cells.iter().enumerate() {
             let short = joints::short(name);
-            if DROPPED.contains(&short) {
-                continue;
-            }
-            if matches!(name, "time" | "t" | "timestamp" | "frame" | "Frame") {
-                (time, in_seconds) = (Some(i), !name.eq_ignore_ascii_case("frame"));
-                continue;
-            }
-            let field = base
+            let lower = name.to_ascii_lowercase();
+            let of_time = matches!(lower.as_str(), "time" | "t" | "timestamp");
+            let place = if of_time || lower == "frame" {
+                in_seconds = of_time;
+                &mut time
+            } else if let Some(extra) = DROPPED.iter().position(|extra| *extra == short) {
+                &mut dropped[extra]
+            } else if let Some(field) = base
                 .iter()
                 .position(|base| *base == name)
-                .or_else(|| ours.iter().position(|ours| *ours == short).map(|j| 7 + j));
-            let Some(field) = field else {
+                .or_else(|| ours.iter().position(|ours| *ours == short).map(|j| 7 + j))
+            {
+                &mut column[field]
+            } else {
                 return Err(self.error(
                     Some(i + 1),
                     format!("unknown column {name:?}"),
@@ -97,7 +104,7 @@ impl Line<'_> {
                      left_knee_joint",
                 ));
             };
-            if column[field].replace(i).is_some() {
+            if place.replace(i).is_some() {
                 return Err(self.error(
                     Some(i + 1),
                     format!("column {name:?} appears twice"),
@@ -124,6 +131,7 @@ impl Line<'_> {
         }
         Ok(Layout {
             column: found,
+            dropped,
             width: cells.len(),
             time,
             in_seconds,

@@ -80,14 +80,23 @@ impl<'a> Archive<'a> {
             .map(Some)
     }
 
-    /// A single number under one of several names.
+    /// A single number under one of several names; if it is there under two, they must be the same.
     pub(in crate::import) fn scalar(&mut self, names: &[&str]) -> Result<Option<f64>, MotionError> {
+        let mut found: Option<(&str, f64)> = None;
         for name in names {
-            if let Some(array) = self.try_numbers(name)? {
-                return Ok(array.values.first().copied());
+            let array = self.try_numbers(name)?;
+            let Some(number) = array.and_then(|array| array.values.first().copied()) else {
+                continue;
+            };
+            match found {
+                Some((other, known)) if known != number => {
+                    let problem = format!("has {other} = {known} and {name} = {number}");
+                    return Err(self.file.unusable(&problem, "keep the right one of them"));
+                }
+                _ => found = found.or(Some((name, number))),
             }
         }
-        Ok(None)
+        Ok(found.map(|(_, number)| number))
     }
 
     /// An array of words, if it is there.

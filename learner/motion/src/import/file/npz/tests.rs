@@ -85,6 +85,23 @@ fn arrays_are_found_by_name() {
 }
 
 #[test]
+fn a_number_under_two_names_must_be_one() {
+    let bytes = Builder::new()
+        .numbers("fps", &[1], &[30.0])
+        .numbers("rate", &[1], &[120.0])
+        .done();
+    let file = File {
+        path: Path::new("two.npz"),
+        bytes: &bytes,
+    };
+    let mut archive = Archive::open(&file).unwrap();
+    let two = archive.scalar(&["rate", "fps"]).unwrap_err().to_string();
+    for part in ["two.npz", "rate = 120", "fps = 30"] {
+        assert!(two.contains(part), "{two}");
+    }
+}
+
+#[test]
 fn no_cut_panics() {
     let bytes = Builder::new().numbers("a", &[2], &[1.0, 2.0]).done();
     for cut in 0..bytes.len() {

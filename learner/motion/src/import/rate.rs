@@ -1,0 +1,120 @@
+//! Frames per second: what the user says, what the file states, and what holds if they differ.
+//!
+//! Separate because a wrong rate is a motion at a wrong speed, which nothing after this would notice;
+//! so it is decided in one place for every format.
+
+use super::Options;
+use super::file::File;
+use crate::error::MotionError;
+
+/// Rates that differ by a smaller share are the same, rounded: 1/0.033 s and 30, 29.97 and 30. Film and
+/// video, 24 and 25, are not.
+const ROUNDING: f64 = 0.02;
+/// Rates that differ by a larger share are worth a word.
+const NOTICED: f64 = 1e-3;
+
+/// Whether two rates are the same but for rounding.
+pub(super) fn agree(a: f64, b: f64) -> bool {
+    (a - b).abs() <= ROUNDING * a.abs().min(b.abs())
+}
+
+/// The rate of a file that states `stated`, under what the user says.
+///
+/// # Errors
+/// No rate at all, one that no motion has, or a user's that contradicts the file's.
+pub(super) fn decide(
+    file: &File<'_>,
+    options: &Options,
+    stated: Option<f64>,
+    decisions: &mut Vec<String>,
+) -> Result<f64, MotionError> {
+    if let (Some(given), Some(stated)) = (options.fps, stated) {
+        if !agree(given, stated) {
+            if !options.force_fps {
+                let factor = given / stated;
+                return Err(file.unusable(
+                    &format!(
+                        "states {stated:.6} frames a second, not {given}: at {given} its motion \
+                         would be {factor:.2} times as fast"
+                    ),
+                    "leave fps (--fps) away; if the file is wrong, import it with --fps and \
+                     --force-fps",
+                ));
+            }
+            decisions.push(format!(
+                "{given} frames a second by --force-fps, against the {stated:.6} that the file states"
+            ));
+        } else if (given / stated - 1.0).abs() > NOTICED {
+            decisions.push(format!(
+                "{given} frames a second as given; the file states {stated:.6}, the same but for rounding"
+            ));
+        }
+    }
+    match options.fps.or(stated) {
+        Some(fps) if (1.0..=10_000.0).contains(&fps) => Ok(fps),
+        Some(fps) => Err(file.unusable(
+            &format!("has a rate of {fps} frames a second"),
+            "give one from 1 to 10000: fps = …, on the command line --fps",
+        )),
+        None => Err(file.unusable(
+            "does not say its frames per second",
+            "say them: fps = 30, on the command line --fps 30 (Unitree's tables have 30)",
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    fn decided(given: Option<f64>, stated: Option<f64>, force: bool) -> Result<f64, String> {
+        let file = File {
+            path: Path::new("walk.bvh"),
+            bytes: b"",
+        };
+        let options = Options {
+            fps: given,
+            force_fps: force,
+            ..Options::default()
+        };
+        let mut decisions = Vec::new();
+        let fps = decide(&file, &options, stated, &mut decisions).map_err(|e| e.to_string())?;
+        let odd = given.zip(stated).is_some_and(|(a, b)| a != b);
+        assert_eq!(decisions.len(), usize::from(odd), "{decisions:?}");
+        Ok(fps)
+    }
+
+    #[test]
+    fn one_rate_is_taken_and_two_must_agree() {
+        assert_eq!(decided(Some(30.0), None, false), Ok(30.0));
+        assert_eq!(decided(None, Some(120.0), false), Ok(120.0));
+        assert_eq!(decided(Some(30.0), Some(30.0), false), Ok(30.0));
+        // A frame time of 0.033 s is 30.303 a second; 29.97 is what video calls 30.
+        assert_eq!(decided(Some(30.0), Some(1.0 / 0.033), false), Ok(30.0));
+        assert_eq!(decided(Some(30.0), Some(29.97), false), Ok(30.0));
+        for (given, stated, times) in [
+            (30.0, 50.0, "0.60 times"),
+            (120.0, 30.0, "4.00 times"),
+            (25.0, 24.0, "1.04 times"),
+            (50.0, 60.0, "0.83 times"),
+            (30.0, f64::NAN, "NaN times"),
+            (30.0, 0.0, "inf times"),
+        ] {
+            let message = decided(Some(given), Some(stated), false).unwrap_err();
+            for part in ["walk.bvh", times, "--fps", "--force-fps"] {
+                assert!(message.contains(part), "{part:?} is not in {message:?}");
+            }
+            assert_eq!(decided(Some(given), Some(stated), true), Ok(given));
+        }
+    }
+
+    #[test]
+    fn no_rate_or_an_impossible_one_is_refused() {
+        assert!(decided(None, None, false).unwrap_err().contains("--fps 30"));
+        for fps in [0.0, -30.0, 0.5, 20_000.0, f64::NAN, f64::INFINITY] {
+            assert!(decided(Some(fps), None, false).is_err(), "{fps}");
+            assert!(decided(None, Some(fps), true).is_err(), "{fps}");
+        }
+    }
+}
