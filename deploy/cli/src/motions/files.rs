@@ -13,7 +13,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use clap::Args;
 use motion::import::{self, Format, Imported, Options};
-use motion::{Clip, MotionError, QuaternionOrder, export};
+use motion::{Clip, MotionError, QuaternionOrder};
 
 use crate::console::Console;
 use crate::failure::usage;
@@ -52,6 +52,8 @@ pub(super) struct Sources {
 pub(super) struct Source {
     pub(super) path: PathBuf,
     pub(super) name: String,
+    /// Whether it was found in a folder, and not named by the user.
+    pub(super) searched: bool,
 }
 
 /// What became of a file.
@@ -66,6 +68,12 @@ impl Sources {
     /// Reads all files, several at once, in their order; progress goes to standard error.
     pub(super) fn read(&self) -> Result<Vec<Read>> {
         let sources = self.found()?;
+        distinct(&sources)?;
+        Ok(self.read_found(sources))
+    }
+
+    /// Reads files that were found.
+    pub(super) fn read_found(&self, sources: Vec<Source>) -> Vec<Read> {
         let options = self.options();
         let next = AtomicUsize::new(0);
         let workers = thread::available_parallelism()
@@ -118,7 +126,13 @@ impl Sources {
             }
             console.finish();
         });
-        Ok(reads.into_iter().flatten().collect())
+        reads.into_iter().flatten().collect()
+    }
+
+    /// All files that are read, skeletons among them.
+    pub(super) fn files<'a>(&'a self, sources: &'a [Source]) -> Vec<&'a Path> {
+        let motions = sources.iter().map(|source| source.path.as_path());
+        motions.chain(self.skeleton.as_deref()).collect()
     }
 
     fn options(&self) -> Options {
@@ -132,8 +146,8 @@ impl Sources {
         }
     }
 
-    /// The files, folders searched, each with a name of its own.
-    fn found(&self) -> Result<Vec<Source>> {
+    /// The files, folders searched.
+    pub(super) fn found(&self) -> Result<Vec<Source>> {
         let mut sources = Vec::new();
         for path in &self.paths {
             if path.is_dir() {
@@ -151,21 +165,27 @@ impl Sources {
                 sources.push(Source {
                     path: path.clone(),
                     name: name(path),
+                    searched: false,
                 });
-            }
-        }
-        let mut known: BTreeMap<&str, &Path> = BTreeMap::new();
-        for source in &sources {
-            if let Some(other) = known.insert(&source.name, &source.path) {
-                return Err(usage(format!(
-                    "{} and {} would have the same name; import their common folder, or one at a time",
-                    other.display(),
-                    source.path.display()
-                )));
             }
         }
         Ok(sources)
     }
+}
+
+/// Refuses two files of one name: nobody could tell what is shown of them.
+fn distinct(sources: &[Source]) -> Result<()> {
+    let mut known: BTreeMap<&str, &Path> = BTreeMap::new();
+    for source in sources {
+        if let Some(other) = known.insert(&source.name, &source.path) {
+            return Err(usage(format!(
+                "{} and {} would have the same name; give their common folder, or one at a time",
+                other.display(),
+                source.path.display()
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// Motion files below a folder, sorted; their names carry the folders between.
@@ -188,7 +208,11 @@ fn search(root: &Path, folder: &Path, sources: &mut Vec<Source>) -> Result<()> {
                 None | Some("") => name,
                 Some(folders) => format!("{folders}_{name}"),
             };
-            sources.push(Source { path, name });
+            sources.push(Source {
+                path,
+                name,
+                searched: true,
+            });
         }
     }
     Ok(())
@@ -199,17 +223,9 @@ fn name(path: &Path) -> String {
         .map_or_else(|| "clip".into(), |stem| stem.to_string_lossy().into_owned())
 }
 
-/// Makes the folder that clips are written to.
+/// Makes the folder that plots are written to.
 pub(super) fn make_folder(out: &Path) -> Result<()> {
     fs::create_dir_all(out).with_context(|| format!("making the folder {}", out.display()))
-}
-
-/// Writes a clip into a folder as a table; returns its path.
-pub(super) fn write_clip(out: &Path, clip: &Clip, notes: &[String]) -> Result<PathBuf> {
-    let path = out.join(format!("{}.csv", clip.name.replace(['/', '\\'], "_")));
-    run::replace_file(&path, export::to_csv(clip, notes).as_bytes())
-        .with_context(|| format!("writing {}", path.display()))?;
-    Ok(path)
 }
 
 #[cfg(test)]

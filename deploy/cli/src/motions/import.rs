@@ -11,8 +11,10 @@ use motion::Quality;
 use motion::import::Imported;
 use serde_json::{Value, json};
 
-use super::files::{self, Read, Sources};
+use super::files::{Read, Source, Sources};
+use super::output::{self, Output, WRITTEN_BY};
 use super::table;
+use crate::failure::usage;
 
 /// Decisions are printed for so many files; for more they are in the reports only.
 const TOLD: usize = 6;
@@ -35,15 +37,17 @@ pub(super) struct Import {
 
 impl Import {
     pub(super) fn run(&self) -> Result<()> {
-        let reads = self.sources.read()?;
-        files::make_folder(&self.out)?;
+        let sources = self.found()?;
+        let outputs: Vec<Output> = sources.iter().map(|s| output(&self.out, s)).collect();
+        output::claim(&self.out, &outputs, &self.sources.files(&sources))?;
+        let reads = self.sources.read_found(sources);
         let mut out = std::io::stdout().lock();
         let verbose = self.verbose || reads.len() <= TOLD;
         let (mut rows, mut failures) = (Vec::new(), Vec::new());
         if !self.json && reads.iter().any(|read| read.outcome.is_ok()) {
             writeln!(out, "{}", table::HEADING)?;
         }
-        for read in &reads {
+        for (read, output) in reads.iter().zip(&outputs) {
             let imported = match &read.outcome {
                 Ok(imported) => imported,
                 Err(error) => {
@@ -53,7 +57,7 @@ impl Import {
             };
             let quality = Quality::of(&imported.clip);
             let report = report(read, imported, &quality);
-            write(&self.out, imported, &report)?;
+            write(output, imported, &report)?;
             if self.json {
                 rows.push(report);
                 continue;
@@ -92,20 +96,50 @@ fn describe(error: &motion::MotionError) -> String {
     text
 }
 
-fn write(out: &Path, imported: &Imported, report: &Value) -> Result<()> {
-    let source = report["source"].as_str().unwrap_or_default();
-    let notes = [format!(
-        "{} from {source} ({})",
-        imported.clip.name, imported.format
-    )];
-    let path = files::write_clip(out, &imported.clip, &notes)?.with_extension("json");
-    let text = serde_json::to_string_pretty(report).context("writing a report")?;
-    run::replace_file(&path, text.as_bytes()).with_context(|| format!("writing {}", path.display()))
+impl Import {
+    /// The files without those that an earlier import into the same folder wrote there.
+    fn found(&self) -> Result<Vec<Source>> {
+        let (written, sources): (Vec<Source>, Vec<Source>) = self
+            .sources
+            .found()?
+            .into_iter()
+            .partition(|s| s.searched && output::is_output(&s.path, &self.out));
+        if !written.is_empty() {
+            let (count, out) = (written.len(), self.out.display());
+            if sources.is_empty() {
+                return Err(usage(format!(
+                    "only clips that were written to {out} before are there; give motion files, or \
+                     another --out"
+                )));
+            }
+            writeln!(
+                std::io::stderr(),
+                "passed over: {count} of the files were written to {out} before"
+            )?;
+        }
+        Ok(sources)
+    }
+}
+
+fn output(out: &Path, source: &Source) -> Output {
+    Output::new(out, &source.name, output::origin("from", &source.path)).with_report()
+}
+
+/// The report first: a clip without one is what a folder of clips must not hold.
+fn write(output: &Output, imported: &Imported, report: &Value) -> Result<()> {
+    if let Some(path) = &output.report {
+        let text = serde_json::to_string_pretty(report).context("writing a report")?;
+        run::replace_file(path, text.as_bytes())
+            .with_context(|| format!("writing {}", path.display()))?;
+    }
+    output.write(&imported.clip, &[format!("format {}", imported.format)])
 }
 
 fn report(read: &Read, imported: &Imported, quality: &Quality) -> Value {
     let actions = imported.retargeting.as_ref().map(retarget::Report::actions);
+    let (written_by, this) = WRITTEN_BY;
     json!({
+        written_by: this,
         "name": imported.clip.name,
         "source": read.source.path.display().to_string(),
         "format": imported.format,
@@ -171,3 +205,6 @@ fn summary(out: &mut impl Write, reads: &[Read], folder: &Path, verbose: bool) -
     )?;
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

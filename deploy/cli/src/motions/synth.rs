@@ -6,7 +6,8 @@ use std::path::PathBuf;
 use anyhow::Result;
 use motion::{Clip, Quality, gait};
 
-use super::{files, table};
+use super::output::{self, Output};
+use super::table;
 use crate::failure::usage;
 
 /// The arguments.
@@ -43,14 +44,20 @@ impl Synth {
             )));
         }
         let clips = self.clips()?;
-        files::make_folder(&self.out)?;
+        let outputs: Vec<Output> = clips.iter().map(|c| self.output(c)).collect();
+        output::claim(&self.out, &outputs, &[])?;
         let mut out = std::io::stdout().lock();
         writeln!(out, "{}", table::HEADING)?;
-        for clip in clips {
-            files::write_clip(&self.out, &clip, &["the built-in gait".into()])?;
-            writeln!(out, "{}", table::line(&clip.name, &Quality::of(&clip)))?;
+        for (clip, output) in clips.iter().zip(&outputs) {
+            output.write(clip, &[])?;
+            writeln!(out, "{}", table::line(&clip.name, &Quality::of(clip)))?;
         }
         Ok(())
+    }
+
+    fn output(&self, clip: &Clip) -> Output {
+        let origin = format!("the built-in gait {}", clip.name);
+        Output::new(&self.out, &clip.name, origin)
     }
 
     fn clips(&self) -> Result<Vec<Clip>> {
@@ -72,7 +79,7 @@ impl Synth {
                     ))
                 })?;
                 clips.push(Clip {
-                    name: format!("{name}_{speed:.2}"),
+                    name: named(name, speed),
                     ..clip.unrolled(self.seconds)
                 });
             }
@@ -86,5 +93,66 @@ impl Synth {
             ));
         }
         Ok(clips)
+    }
+}
+
+/// Two decimals, or as many as tell the speed from its neighbours.
+fn named(name: &str, speed: f64) -> String {
+    let short = format!("{speed:.2}");
+    if short.parse() == Ok(speed) {
+        format!("{name}_{short}")
+    } else {
+        format!("{name}_{speed}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+    use std::fs;
+
+    #[derive(Debug, Parser)]
+    struct Line {
+        #[command(flatten)]
+        synth: Synth,
+    }
+
+    fn synth(arguments: &[&str]) -> Result<(), String> {
+        let line = Line::try_parse_from(std::iter::once(&"synth").chain(arguments)).unwrap();
+        line.synth.run().map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn speeds_that_differ_have_names_that_differ() {
+        assert_eq!(named("walk", 0.5), "walk_0.50");
+        assert_eq!(named("walk", 0.98), "walk_0.98");
+        assert_eq!(named("walk", 0.501), "walk_0.501");
+        assert_eq!(named("walk", -0.3), "walk_-0.30");
+    }
+
+    #[test]
+    fn what_is_there_is_not_written_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().to_str().unwrap();
+        let clip = folder.path().join("walk_0.50.csv");
+        let arguments = ["--walk", "0.5,0.501", "--seconds", "0.5", "--out", out];
+        fs::write(&clip, "mine").unwrap();
+        let message = synth(&arguments).unwrap_err();
+        assert!(
+            message.contains("walk_0.50.csv is there and was not"),
+            "{message}"
+        );
+        assert_eq!(fs::read_to_string(&clip).unwrap(), "mine");
+        assert_eq!(fs::read_dir(out).unwrap().count(), 1);
+        fs::remove_file(&clip).unwrap();
+        synth(&arguments).unwrap();
+        synth(&arguments).unwrap();
+        assert_eq!(fs::read_dir(out).unwrap().count(), 2);
+        let message = synth(&["--walk", "0.5,0.5", "--out", out]).unwrap_err();
+        assert!(
+            message.contains("walk_0.50.csv would hold two clips"),
+            "{message}"
+        );
     }
 }

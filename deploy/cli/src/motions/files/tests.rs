@@ -1,5 +1,6 @@
 //! Which files are found, and in which order they come back.
 
+use super::super::output::Output;
 use super::*;
 
 fn sources(paths: Vec<PathBuf>) -> Sources {
@@ -37,8 +38,9 @@ fn folders_are_searched_and_their_names_kept() {
         ["CMU_02_a", "CMU_02_b", "walk", "walk_0.50", "walk_0.98"]
     );
     let twice = sources(vec![root.into(), root.join("walk.csv")])
-        .found()
-        .unwrap_err();
+        .read()
+        .err()
+        .unwrap();
     assert!(twice.to_string().contains("same name"), "{twice}");
     let empty = tempfile::tempdir().unwrap();
     assert!(sources(vec![empty.path().into()]).found().is_err());
@@ -53,7 +55,8 @@ fn files_are_read_at_once_and_kept_in_order() {
             name: format!("walk{i}"),
             ..walk.clone()
         };
-        write_clip(folder.path(), &clip, &[]).unwrap();
+        let output = Output::new(folder.path(), &clip.name, "made".into());
+        output.write(&clip, &[]).unwrap();
     }
     fs::write(folder.path().join("walk3.csv"), "broken").unwrap();
     let reads = sources(vec![folder.path().into()]).read().unwrap();

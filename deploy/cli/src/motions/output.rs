@@ -1,0 +1,186 @@
+//! Where clips are written, and what is never written over.
+//!
+//! Separate because every subcommand that writes clips must ask the same, and ask it of all files before
+//! it reads or writes the first: whether a name is free, or holds what the same command wrote before.
+
+use std::collections::{BTreeMap, HashSet};
+use std::fs;
+use std::io::{self, Read};
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use motion::{Clip, export};
+use serde_json::Value;
+
+use crate::failure::usage;
+
+/// The key of a report that says who wrote it, and what it says.
+pub(super) const WRITTEN_BY: (&str, &str) = ("written_by", "ampco motions import");
+/// Reports are a few kilobytes; what is larger is none.
+const LARGEST_REPORT: u64 = 16 << 20;
+/// Conflicts are shown up to this many.
+const SHOWN: usize = 5;
+
+/// A clip that is to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Output {
+    /// The table.
+    pub(super) clip: PathBuf,
+    /// The report beside it, if there is to be one.
+    pub(super) report: Option<PathBuf>,
+    /// What the clip is made from: a table of another origin is not written over.
+    pub(super) origin: String,
+}
+
+impl Output {
+    /// The clip of some name in a folder, without a report.
+    pub(super) fn new(out: &Path, name: &str, origin: String) -> Self {
+        Self {
+            clip: out.join(format!("{}.csv", name.replace(['/', '\\'], "_"))),
+            report: None,
+            origin,
+        }
+    }
+
+    /// With a report beside it.
+    pub(super) fn with_report(self) -> Self {
+        let report = Some(self.clip.with_extension("json"));
+        Self { report, ..self }
+    }
+
+    /// Writes the clip; `notes` follow its origin.
+    pub(super) fn write(&self, clip: &Clip, notes: &[String]) -> Result<()> {
+        let notes = [std::slice::from_ref(&self.origin), notes].concat();
+        let text = export::to_csv(clip, &notes);
+        run::replace_file(&self.clip, text.as_bytes())
+            .with_context(|| format!("writing {}", self.clip.display()))
+    }
+}
+
+/// The origin of a clip that is imported from a file, or its mirror image.
+pub(super) fn origin(verb: &str, source: &Path) -> String {
+    format!("{verb} {}", source.display())
+}
+
+/// Makes the folder if all outputs may be written; changes nothing otherwise.
+///
+/// # Errors
+/// Two outputs of one name (whatever their case: some file systems see none), or one whose place is taken
+/// by a source, by a file of somebody else, or by a clip of another origin.
+pub(super) fn claim(out: &Path, outputs: &[Output], sources: &[&Path]) -> Result<()> {
+    let sources: HashSet<(u64, u64)> = sources.iter().filter_map(|path| identity(path)).collect();
+    let mut known: BTreeMap<String, &Output> = BTreeMap::new();
+    let mut conflicts = Vec::new();
+    for output in outputs {
+        let name = output.clip.to_string_lossy().to_lowercase();
+        if let Some(other) = known.insert(name, output) {
+            conflicts.push(format!(
+                "{} would hold two clips: {}, and {}; give each a folder of its own",
+                output.clip.display(),
+                other.origin,
+                output.origin
+            ));
+        }
+        for path in std::iter::once(&output.clip).chain(&output.report) {
+            let taken = taken(path, output, &sources)
+                .with_context(|| format!("looking at {}", path.display()))?;
+            conflicts.extend(taken.map(|why| format!("{} {why}", path.display())));
+        }
+    }
+    if conflicts.is_empty() {
+        return fs::create_dir_all(out)
+            .with_context(|| format!("making the folder {}", out.display()));
+    }
+    let more = conflicts.len().saturating_sub(SHOWN);
+    conflicts.truncate(SHOWN);
+    if more > 0 {
+        conflicts.push(format!("and {more} more"));
+    }
+    Err(usage(format!(
+        "nothing was written: {}",
+        conflicts.join("\n")
+    )))
+}
+
+/// Why nothing may be written to a path; `None` if it is free.
+fn taken(
+    path: &Path,
+    output: &Output,
+    sources: &HashSet<(u64, u64)>,
+) -> io::Result<Option<String>> {
+    let there = match fs::symlink_metadata(path) {
+        Ok(there) => there,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(error),
+    };
+    if identity(path).is_some_and(|file| sources.contains(&file)) {
+        return Ok(Some(
+            "is one of the files that are read, and would be written over; give another --out"
+                .into(),
+        ));
+    }
+    if !there.is_file() {
+        let what = if there.is_dir() { "a folder" } else { "a link" };
+        return Ok(Some(format!("is {what}; move it, or give another --out")));
+    }
+    if Some(path) == output.report.as_deref() {
+        let ours = there.len() <= LARGEST_REPORT && is_report(&fs::read(path)?);
+        return Ok((!ours).then(foreign));
+    }
+    Ok(match export::origin(&beginning(path)?) {
+        None => Some(foreign()),
+        Some(before) if same_origin(before, &output.origin) => None,
+        Some(before) => Some(format!(
+            "holds another clip ({before}); remove it, or give another --out"
+        )),
+    })
+}
+
+fn foreign() -> String {
+    "is there and was not written by this command; move it, or give another --out".into()
+}
+
+fn is_report(bytes: &[u8]) -> bool {
+    let (key, value) = WRITTEN_BY;
+    serde_json::from_slice::<Value>(bytes).is_ok_and(|report| report[key] == value)
+}
+
+/// Whether two origins are the same, however the path in them is spelt.
+fn same_origin(a: &str, b: &str) -> bool {
+    let file = |origin: &str| {
+        let (verb, path) = origin.split_once(' ')?;
+        Some((verb.to_owned(), identity(Path::new(path))?))
+    };
+    a == b || file(a).is_some_and(|a| file(b) == Some(a))
+}
+
+/// What a file is under all of its names and links; `None` if it is not there.
+fn identity(path: &Path) -> Option<(u64, u64)> {
+    let file = fs::metadata(path).ok()?;
+    Some((file.dev(), file.ino()))
+}
+
+/// Whether a file is a clip that was written into `out`.
+pub(super) fn is_output(path: &Path, out: &Path) -> bool {
+    let inside = || {
+        let folder = fs::canonicalize(path.parent()?).ok()?;
+        let out = fs::canonicalize(out).ok()?;
+        Some(folder == out)
+    };
+    inside() == Some(true)
+        && path.extension().is_some_and(|ending| ending == "csv")
+        && beginning(path).is_ok_and(|text| export::is_marked(&text))
+}
+
+/// The first lines of a file.
+fn beginning(path: &Path) -> io::Result<String> {
+    let mut bytes = Vec::new();
+    fs::File::open(path)?
+        .take(64 << 10)
+        .read_to_end(&mut bytes)?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+#[cfg(test)]
+mod tests;
