@@ -60,7 +60,8 @@ impl Output {
 
 /// The origin of a clip that is imported from a file, or its mirror image.
 pub(super) fn origin(verb: &str, source: &Path) -> String {
-    format!("{verb} {}", source.display())
+    // As the table's note has it, in a line.
+    format!("{verb} {}", source.display()).replace(['\n', '\r'], " ")
 }
 
 /// Makes the folder if all outputs may be written; changes nothing otherwise.
@@ -125,25 +126,33 @@ fn taken(
         return Ok(Some(format!("is {what}; move it, or give another --out")));
     }
     if Some(path) == output.report.as_deref() {
-        let ours = there.len() <= LARGEST_REPORT && is_report(&fs::read(path)?);
-        return Ok((!ours).then(foreign));
+        let small = there.len() <= LARGEST_REPORT;
+        let report = if small { fs::read(path)? } else { Vec::new() };
+        return Ok(other(reported_origin(&report).as_deref(), output));
     }
-    Ok(match export::origin(&beginning(path)?) {
-        None => Some(foreign()),
+    let text = beginning(path)?;
+    Ok(other(export::origin(&text), output))
+}
+
+/// Why a file of some origin is not replaced; of none if somebody else wrote it.
+fn other(origin: Option<&str>, output: &Output) -> Option<String> {
+    match origin {
+        None => Some(
+            "is there and was not written by this command; move it, or give another --out".into(),
+        ),
         Some(before) if same_origin(before, &output.origin) => None,
         Some(before) => Some(format!(
-            "holds another clip ({before}); remove it, or give another --out"
+            "is of another clip ({before}); remove it, or give another --out"
         )),
-    })
+    }
 }
 
-fn foreign() -> String {
-    "is there and was not written by this command; move it, or give another --out".into()
-}
-
-fn is_report(bytes: &[u8]) -> bool {
+/// The origin of the clip that a report is about; `None` if it is no report.
+fn reported_origin(bytes: &[u8]) -> Option<String> {
+    let report: Value = serde_json::from_slice(bytes).ok()?;
     let (key, value) = WRITTEN_BY;
-    serde_json::from_slice::<Value>(bytes).is_ok_and(|report| report[key] == value)
+    let source = report["source"].as_str()?;
+    (report[key] == value).then(|| origin("from", Path::new(source)))
 }
 
 /// Whether two origins are the same, however the path in them is spelt.

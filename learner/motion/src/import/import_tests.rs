@@ -138,6 +138,34 @@ fn a_rate_against_the_files_own_is_refused_in_every_format_that_states_one() {
 }
 
 #[test]
+fn a_t_pose_before_a_capture_is_dropped_and_said() {
+    // SMPL at rest stands in a T; from the second frame on its arms (joints 16 and 17) hang, turned about
+    // the body's z by 80° (1.4 rad). 60 frames at 100 a second, sliding ahead.
+    let (mut poses, mut trans) = (vec![0.0; 60 * 156], Vec::new());
+    for i in 0..60 {
+        let pose = &mut poses[i * 156..(i + 1) * 156];
+        pose[0] = std::f64::consts::FRAC_PI_2;
+        if i > 0 {
+            (pose[3 * 16 + 2], pose[3 * 17 + 2]) = (-1.4, 1.4);
+        }
+        trans.extend([0.0, -0.01 * i as f64, 0.95]);
+    }
+    let bytes = file::npz::tests::Builder::new()
+        .numbers("poses", &[60, 156], &poses)
+        .numbers("trans", &[60, 3], &trans)
+        .numbers("mocap_framerate", &[], &[100.0])
+        .done();
+    let result = told("t.npz", &bytes);
+    // 59 frames last 0.58 s, which are 30 frames at 50 Hz.
+    assert_eq!((result.frames, result.clip.frames.len()), (60, 30));
+    let said = |words: &str| result.decisions.iter().any(|d| d.contains(words));
+    assert!(said(
+        "dropped the first frame, a calibration pose: the next frame is 80°"
+    ));
+    assert!(said("T-pose"), "{:?}", result.decisions);
+}
+
+#[test]
 fn a_bow_of_the_larger_robot_is_a_bow_of_this_one() {
     // Standing for 1 s with the waist pitched by 0.2 rad (11°): x y z, qw qx qy qz, 29 joints.
     let pose: Vec<String> = joints::SDK_29

@@ -273,4 +273,32 @@ mod tests {
         names.retain(|name| *name != "left_knee_joint");
         assert_eq!(columns(&names), Err("left_knee"));
     }
+
+    #[test]
+    fn joints_that_are_not_ours_are_kept_apart() {
+        // Two frames of 30 joints: 0.00, 0.01, … and the same negative, the thumb last.
+        let first: Vec<f64> = (0..30).map(|i| f64::from(i) / 100.0).collect();
+        let values = first.iter().copied().chain(first.iter().map(|q| -q));
+        let array =
+            |shape: [usize; 2], values: Vec<f64>| Array::of(shape.to_vec(), values, false).unwrap();
+        let joints = array([2, 30], values.collect());
+        let place = array([2, 3], vec![0.0; 6]);
+        let turn = array([2, 4], [1.0, 0.0, 0.0, 0.0].repeat(2));
+        let names: Vec<&str> = SDK_29.iter().copied().chain(["left_thumb_joint"]).collect();
+        let table = Table {
+            position: (&place, "p"),
+            orientation: (&turn, "q"),
+            joints: (&joints, "j"),
+            columns: columns(&names).unwrap(),
+        };
+        let file = File {
+            path: std::path::Path::new("x"),
+            bytes: b"",
+        };
+        let rows = table.rows(&file, QuaternionOrder::Wxyz).unwrap();
+        // Waist roll and pitch are 13 and 14, pitch and yaw of the wrists 20, 21, 27, 28.
+        assert_eq!(rows[0].dropped, [0.13, 0.14, 0.20, 0.21, 0.27, 0.28]);
+        assert_eq!(rows[1].joints[12..14], [-0.12, -0.15]);
+        assert_eq!(table.others(), [("left_thumb".to_owned(), 0.29)]);
+    }
 }

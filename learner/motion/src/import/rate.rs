@@ -18,6 +18,11 @@ pub(super) fn agree(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDING * a.abs().min(b.abs())
 }
 
+/// A rate in at most three decimals.
+pub(super) fn shown(fps: f64) -> String {
+    format!("{}", (1000.0 * fps).round() / 1000.0)
+}
+
 /// The rate of a file that states `stated`, under what the user says.
 ///
 /// # Errors
@@ -29,12 +34,13 @@ pub(super) fn decide(
     decisions: &mut Vec<String>,
 ) -> Result<f64, MotionError> {
     if let (Some(given), Some(stated)) = (options.fps, stated) {
+        let of_file = shown(stated);
         if !agree(given, stated) {
             if !options.force_fps {
                 let factor = given / stated;
                 return Err(file.unusable(
                     &format!(
-                        "states {stated:.6} frames a second, not {given}: at {given} its motion \
+                        "states {of_file} frames a second, not {given}: at {given} its motion \
                          would be {factor:.2} times as fast"
                     ),
                     "leave fps (--fps) away; if the file is wrong, import it with --fps and \
@@ -42,11 +48,11 @@ pub(super) fn decide(
                 ));
             }
             decisions.push(format!(
-                "{given} frames a second by --force-fps, against the {stated:.6} that the file states"
+                "{given} frames a second by --force-fps, against the {of_file} that the file states"
             ));
         } else if (given / stated - 1.0).abs() > NOTICED {
             decisions.push(format!(
-                "{given} frames a second as given; the file states {stated:.6}, the same but for rounding"
+                "{given} frames a second as given; the file states {of_file}, the same but for rounding"
             ));
         }
     }
@@ -107,6 +113,12 @@ mod tests {
             }
             assert_eq!(decided(Some(given), Some(stated), true), Ok(given));
         }
+    }
+
+    #[test]
+    fn rates_are_shown_in_few_digits() {
+        assert_eq!(shown(1.0 / 0.02), "50");
+        assert_eq!(shown(1.0 / 0.033), "30.303");
     }
 
     #[test]

@@ -107,7 +107,13 @@ fn what_somebody_else_wrote_is_never_written_over() {
     symlink(root.join("nowhere"), &clip).unwrap();
     refused(&out, &[&source], &["a.csv is a link"]);
     fs::remove_file(&clip).unwrap();
-    file(report, "{\"written_by\": \"ampco motions import\"}");
+    let written = |source: &Path| {
+        let source = source.display();
+        format!("{{\"written_by\": \"ampco motions import\", \"source\": \"{source}\"}}")
+    };
+    file(report.clone(), &written(&root.join("b.bvh")));
+    refused(&out, &[&source], &["a.json is of another clip (from "]);
+    file(report, &written(&source));
     claimed(&out, &[&source]).unwrap();
     // The folder itself may be a file.
     let file = file(root.join("file"), "");
@@ -129,7 +135,7 @@ fn a_clip_is_replaced_by_a_newer_one_of_the_same_origin_only() {
     claimed(&out, &[&first]).unwrap();
     claimed(&out, &[&root.join("first/../first/walk.bvh")]).unwrap();
     let words = [
-        "walk.csv holds another clip (from ",
+        "walk.csv is of another clip (from ",
         "first/walk.bvh)",
         "remove it",
     ];
@@ -140,12 +146,12 @@ fn a_clip_is_replaced_by_a_newer_one_of_the_same_origin_only() {
         assert!(claim(&out, &output, &[&first]).is_err());
         output[0].write(&clip, &[]).unwrap();
         claim(&out, &output, &[&first]).unwrap();
-        refused(&out, &[&first], &["holds another clip"]);
+        refused(&out, &[&first], &["is of another clip"]);
     }
     // Where the first source is gone, its clip is the only one left of it.
     outputs(&out, &[&first])[0].write(&clip, &[]).unwrap();
     fs::remove_file(&first).unwrap();
-    refused(&out, &[&second], &["holds another clip"]);
+    refused(&out, &[&second], &["is of another clip"]);
 }
 
 #[test]

@@ -5,7 +5,7 @@
 use super::Line;
 use crate::error::MotionError;
 use crate::import::file::File;
-use crate::import::rate::agree;
+use crate::import::rate::{agree, shown};
 
 /// A rate and where the table states it.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,10 +32,10 @@ pub(super) fn one(
     for pair in stated.windows(2) {
         let [a, b] = pair else { continue };
         if !agree(a.fps, b.fps) {
-            let (f, g) = (a.fps, b.fps);
+            let (f, g) = (shown(a.fps), shown(b.fps));
             return Err(file.unusable(
                 &format!(
-                    "states two rates: {f:.6} frames a second in {}, {g:.6} in {}",
+                    "states two rates: {f} frames a second in {}, {g} in {}",
                     a.place, b.place
                 ),
                 "remove the wrong one, or import it with --fps and --force-fps",
