@@ -4,7 +4,7 @@
 
 use crate::capture::{Capture, Side};
 use crate::feet::{Free, Plan};
-use crate::report::{Report, held};
+use crate::report::{Report, bones_off, held};
 use crate::solver::{self, Solved};
 use crate::targets::{self, Target};
 use crate::{RATE, contact, feet, signal};
@@ -126,11 +126,12 @@ fn account(
     postures: &[Posture],
     (human_leg, scale, lifted): (f64, f64, f64),
 ) -> Report {
-    let mut errors: Vec<f64> = targets
+    let angles: Vec<Vec<f64>> = targets
         .iter()
         .zip(postures)
-        .flat_map(|(target, posture)| direction_errors(target, posture))
+        .map(|(target, posture)| direction_errors(target, posture))
         .collect();
+    let mut errors = angles.concat();
     let count = |held: fn(&Solved) -> &[bool; JOINTS]| -> [usize; JOINTS] {
         std::array::from_fn(|j| solved.iter().filter(|s| held(s)[j]).count())
     };
@@ -144,6 +145,7 @@ fn account(
         speed: way.xy().norm() * RATE / (postures.len() - 1) as f64,
         direction_error: signal::median(&mut errors),
         direction_error_95: signal::quantile(&mut errors, 0.95),
+        bones_off: bones_off(&angles),
         stances: plan.stances,
         feet_moved: plan.moved,
         lowered: plan.lowered,
@@ -153,7 +155,8 @@ fn account(
     }
 }
 
-/// Angles between bones and feet of the robot and those of the human, degrees.
+/// Angles between bones and feet of the robot and those of the human, degrees: thigh, shin, upper arm, forearm and foot
+/// of the left side, then of the right.
 fn direction_errors(target: &Target, posture: &Posture) -> Vec<f64> {
     let bodies = forward(&posture.base, &posture.joints);
     let bones = solver::bones(&bodies);
