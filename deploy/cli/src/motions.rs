@@ -44,7 +44,7 @@ enum Action {
     Inspect(inspect::Inspect),
     /// Write the built-in gait at given speeds as clips
     Synth(synth::Synth),
-    /// Check a set of clips: balance over speeds, defects; exit status 1 if there are any
+    /// Check a set of clips: balance over speeds, defects; exit status 1 if any makes a clip unfit
     Check(check::Check),
     /// Write clips with left and right swapped
     Mirror(mirror::Mirror),

@@ -8,6 +8,8 @@ use amp::PolicyConfig;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use motion::Dataset;
+use motion::dataset::Reference;
+use motion::quality::{Severity, line, severity};
 use protocol::RolloutLayout;
 use run::motion::Print;
 use run::{Config, Folder};
@@ -196,8 +198,10 @@ struct Ready {
 fn check(config: &Config, resolved: &Resolved) -> Result<Vec<Print>> {
     // Files are absolute by now, so the folder they would start from does not matter.
     let here = Path::new(".");
-    let files =
-        Dataset::load(&resolved.motion, here).and_then(|_| Dataset::files(&resolved.motion, here));
+    let files = Dataset::read(&resolved.motion, here).and_then(|references| {
+        report_defects(&references);
+        Dataset::files(&resolved.motion, here)
+    });
     // Its causes belong to the line: which row of which file.
     let files = files
         .map_err(|error| config.refuse("motion", format!("{:#}", anyhow::Error::from(error))))?;
@@ -220,6 +224,29 @@ fn check(config: &Config, resolved: &Resolved) -> Result<Vec<Print>> {
         );
     }
     Ok(prints)
+}
+
+/// A line per clip from a file that has defects.
+///
+/// Not a refusal: whoever names a file may know better what it is for than a threshold does, one clip of hundreds must
+/// not keep a night's run from starting, and `ampco motions check` is there to refuse.
+fn report_defects(references: &[Reference]) {
+    let mut unfit = 0;
+    for reference in references {
+        let defects = reference.defects();
+        if defects.is_empty() {
+            continue;
+        }
+        unfit += usize::from(severity(&defects) == Some(Severity::Unfit));
+        say(&format!("motion {}", line(&reference.clip.name, &defects)));
+    }
+    if unfit > 0 {
+        say(&format!(
+            "motion: {unfit} of {} clips are UNFIT to train on, and are trained on all the same; `ampco motions check` \
+             says what to do about each",
+            references.len()
+        ));
+    }
 }
 
 /// Bytes free in /dev/shm.

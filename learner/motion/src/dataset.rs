@@ -5,6 +5,8 @@
 
 mod source;
 
+pub use source::Reference;
+
 use crate::clip::Clip;
 use crate::config::MotionConfig;
 use crate::error::MotionError;
@@ -44,16 +46,13 @@ impl Dataset {
     /// A field out of range, a file that cannot be read or used: the message names the place and
     /// the remedy.
     pub fn load(config: &MotionConfig, base_dir: &Path) -> Result<Self, MotionError> {
-        config.validate()?;
         let mut clips = Vec::new();
-        for (index, source) in config.clips.iter().enumerate() {
-            for mut clip in source::load_clips(source, index, base_dir)? {
-                if config.mirror {
-                    clip.weight /= 2.0;
-                    clips.push(clip.mirrored());
-                }
-                clips.push(clip);
+        for Reference { mut clip, .. } in Self::read(config, base_dir)? {
+            if config.mirror {
+                clip.weight /= 2.0;
+                clips.push(clip.mirrored());
             }
+            clips.push(clip);
         }
         let data = Self::of(clips);
         Ok(if config.stratify {
@@ -77,6 +76,19 @@ impl Dataset {
             }
         }
         Ok(files)
+    }
+
+    /// The clips of a configuration as they come, not mirrored, with what is known of them; else as [`Self::load`].
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn read(config: &MotionConfig, base_dir: &Path) -> Result<Vec<Reference>, MotionError> {
+        config.validate()?;
+        let mut clips = Vec::new();
+        for (index, source) in config.clips.iter().enumerate() {
+            clips.extend(source::load_clips(source, index, base_dir)?);
+        }
+        Ok(clips)
     }
 
     /// The same clips, drawn so that every speed has the same share.

@@ -3,14 +3,20 @@
 //! Separate because imported, built-in and mirrored clips are measured alike, and because a training
 //! run cannot be better than this.
 
+mod account;
+mod defect;
+mod defects;
 mod tracking;
 
+pub use account::Account;
+pub use defect::{Defect, Frames, Kind, Severity, line, paragraph, severity};
+pub use defects::{Examination, defects};
 pub use tracking::Tracking;
 
 use crate::clip::{Clip, FRAME_SECONDS};
 use g1::kinematics::{forward_state, lowest_sole_point, sole_points};
 use g1::{JOINT_TABLE, JOINTS, LEFT_FOOT, RIGHT_FOOT, RobotState};
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use retarget::signal::{median, quantile};
 use serde::Serialize;
 
@@ -114,53 +120,6 @@ impl Quality {
             velocity_error: velocity_error(&clip.frames),
         }
     }
-
-    /// What is wrong with the clip, a sentence each; empty if a robot could do it.
-    pub fn defects(&self) -> Vec<String> {
-        let mut defects = Vec::new();
-        let mut say = |wrong: bool, what: String| {
-            if wrong {
-                defects.push(what);
-            }
-        };
-        say(
-            self.seconds < 0.5,
-            format!("lasts {:.2} s only", self.seconds),
-        );
-        say(
-            self.slip > 0.10,
-            format!("standing feet slip at {:.2} m/s", self.slip),
-        );
-        say(
-            self.penetration > 0.005,
-            format!(
-                "soles are up to {:.1} cm below the ground",
-                100.0 * self.penetration
-            ),
-        );
-        say(
-            self.float > 0.05,
-            format!("floats {:.0} cm above the ground", 100.0 * self.float),
-        );
-        for Beyond { joint, frames, by } in &self.beyond_limits {
-            say(
-                true,
-                format!("{joint} is up to {by:.3} rad beyond its limit in {frames} frames"),
-            );
-        }
-        say(
-            self.peak_step > 1.0,
-            format!(
-                "{} turns at {:.1} times its motor's speed",
-                self.peak_joint, self.peak_step
-            ),
-        );
-        say(
-            self.height[0] < 0.3,
-            format!("the pelvis comes down to {:.2} m", self.height[0]),
-        );
-        defects
-    }
 }
 
 /// Speeds over half a second at every frame, m/s.
@@ -183,6 +142,8 @@ pub fn speeds(clip: &Clip) -> Vec<f64> {
 struct Feet {
     corners: [[Point3<f32>; 4]; 2],
     low: [f32; 2],
+    /// Where the feet point, unit vectors in the world.
+    toes: [Vector3<f32>; 2],
 }
 
 impl Feet {
@@ -191,6 +152,7 @@ impl Feet {
         Self {
             corners: [LEFT_FOOT, RIGHT_FOOT].map(|foot| sole_points(&bodies, foot)),
             low: [LEFT_FOOT, RIGHT_FOOT].map(|foot| lowest_sole_point(&bodies, foot)),
+            toes: [LEFT_FOOT, RIGHT_FOOT].map(|foot| bodies[foot].rotation * Vector3::x()),
         }
     }
 }

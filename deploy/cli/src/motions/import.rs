@@ -7,8 +7,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
-use motion::Quality;
 use motion::import::Imported;
+use motion::quality::{Examination, paragraph};
 use serde_json::{Value, json};
 
 use super::files::{Read, Source, Sources};
@@ -55,16 +55,19 @@ impl Import {
                     continue;
                 }
             };
-            let quality = Quality::of(&imported.clip);
-            let report = report(read, imported, &quality);
+            let found = Examination::of(imported, &read.source.path);
+            let report = report(read, imported, &found);
             write(output, imported, &report)?;
             if self.json {
                 rows.push(report);
                 continue;
             }
-            writeln!(out, "{}", table::line(&imported.clip.name, &quality))?;
+            writeln!(out, "{}", table::line(&imported.clip.name, &found.quality))?;
             if verbose {
-                tell(&mut out, imported, &quality)?;
+                tell(&mut out, imported)?;
+            }
+            if !found.defects.is_empty() {
+                writeln!(out, "{}", paragraph(&imported.clip.name, &found.defects))?;
             }
         }
         if self.json {
@@ -135,8 +138,9 @@ fn write(output: &Output, imported: &Imported, report: &Value) -> Result<()> {
     output.write(&imported.clip, &[format!("format {}", imported.format)])
 }
 
-fn report(read: &Read, imported: &Imported, quality: &Quality) -> Value {
-    let actions = imported.retargeting.as_ref().map(retarget::Report::actions);
+fn report(read: &Read, imported: &Imported, found: &Examination) -> Value {
+    // A table that was imported before brings its account along.
+    let retargeting = found.account.report();
     let (written_by, this) = WRITTEN_BY;
     json!({
         written_by: this,
@@ -146,16 +150,16 @@ fn report(read: &Read, imported: &Imported, quality: &Quality) -> Value {
         "frames": imported.frames,
         "fps": imported.fps,
         "decisions": imported.decisions,
-        "retargeting": imported.retargeting,
-        "actions": actions,
-        "quality": quality,
-        "defects": quality.defects(),
-        "frames_per_second_and_core": quality.frames as f64 / read.seconds,
+        "retargeting": retargeting,
+        "actions": retargeting.map(retarget::Report::actions),
+        "quality": found.quality,
+        "defects": found.defects,
+        "frames_per_second_and_core": found.quality.frames as f64 / read.seconds,
     })
 }
 
-/// What was decided and done, and what is left.
-fn tell(out: &mut impl Write, imported: &Imported, quality: &Quality) -> Result<()> {
+/// What was decided and done.
+fn tell(out: &mut impl Write, imported: &Imported) -> Result<()> {
     for decision in &imported.decisions {
         writeln!(out, "    {decision}")?;
     }
@@ -168,9 +172,6 @@ fn tell(out: &mut impl Write, imported: &Imported, quality: &Quality) -> Result<
             "    tracking: bones are off by {:.1}° (median), {:.1}° (95 %); speed {:.2} m/s of {:.2} m/s scaled",
             report.direction_error, report.direction_error_95, report.speed, report.scaled_speed
         )?;
-    }
-    for defect in quality.defects() {
-        writeln!(out, "    left: {defect}")?;
     }
     Ok(())
 }

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 use g1::{JOINT_TABLE, JOINTS};
-use motion::{Clip, Quality};
+use motion::Clip;
+use motion::quality::{Examination, paragraph};
 use serde_json::{Value, json};
 
 use super::files::{self, Sources};
@@ -37,22 +38,26 @@ impl Inspect {
         }
         let few = reads.len() <= 3;
         for read in reads {
-            let clip = match read.outcome {
-                Ok(imported) => imported.clip,
+            let imported = match read.outcome {
+                Ok(imported) => imported,
                 Err(error) => {
                     failures.push(format!("{:#}", anyhow::Error::from(error)));
                     continue;
                 }
             };
-            let quality = Quality::of(&clip);
+            let found = Examination::of(&imported, &read.source.path);
+            let clip = imported.clip;
             if self.json {
-                rows.push(
-                    json!({ "name": clip.name, "quality": quality, "ranges": ranges(&clip) }),
-                );
+                rows.push(json!({
+                    "name": clip.name,
+                    "quality": found.quality,
+                    "defects": found.defects,
+                    "ranges": ranges(&clip),
+                }));
             } else {
-                writeln!(out, "{}", table::line(&clip.name, &quality))?;
+                writeln!(out, "{}", table::line(&clip.name, &found.quality))?;
                 if few {
-                    details(&mut out, &clip, &quality)?;
+                    details(&mut out, &clip, &found)?;
                 }
             }
             if let Some(folder) = &self.plots {
@@ -89,7 +94,8 @@ fn range(clip: &Clip, joint: usize) -> [f32; 3] {
     ]
 }
 
-fn details(out: &mut impl Write, clip: &Clip, quality: &Quality) -> Result<()> {
+fn details(out: &mut impl Write, clip: &Clip, found: &Examination) -> Result<()> {
+    let quality = &found.quality;
     let [slow, fast] = quality.speed_range;
     let [low, high] = quality.height;
     writeln!(
@@ -123,8 +129,8 @@ fn details(out: &mut impl Write, clip: &Clip, quality: &Quality) -> Result<()> {
             joint.name, joint.lower, joint.upper
         )?;
     }
-    for defect in quality.defects() {
-        writeln!(out, "    defect: {defect}")?;
+    if !found.defects.is_empty() {
+        writeln!(out, "{}", paragraph(&clip.name, &found.defects))?;
     }
     Ok(())
 }

@@ -3,15 +3,35 @@
 use crate::clip::Clip;
 use crate::config::{ClipConfig, Gait, wrong};
 use crate::error::MotionError;
+use crate::quality::{Account, Defect, Quality, defects};
 use crate::{gait, import};
 use std::path::{Path, PathBuf};
+
+/// A clip of a configuration, as it comes: not mirrored.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reference {
+    /// The clip, with its share of the weight.
+    pub clip: Clip,
+    /// What is known of how it came about; `None` of a built-in gait.
+    pub account: Option<Account>,
+}
+
+impl Reference {
+    /// What is wrong with a clip from a file. Built-in gaits have no defects: tests go through all of them, and looking
+    /// would only cost time at every start.
+    pub fn defects(&self) -> Vec<Defect> {
+        self.account.as_ref().map_or_else(Vec::new, |account| {
+            defects(&self.clip, &Quality::of(&self.clip), account)
+        })
+    }
+}
 
 /// The clips of a source; those of a folder share its weight by their duration.
 pub(super) fn load_clips(
     source: &ClipConfig,
     index: usize,
     base_dir: &Path,
-) -> Result<Vec<Clip>, MotionError> {
+) -> Result<Vec<Reference>, MotionError> {
     let options = import::Options {
         fps: source.fps,
         quaternion: source.quaternion,
@@ -30,12 +50,17 @@ pub(super) fn load_clips(
             };
             let impossible =
                 "no pose of the legs makes this gait; lower lateral, yaw_rate or speed";
-            vec![made.ok_or_else(|| wrong(format!("clips[{index}]"), velocity, impossible))?]
+            let clip =
+                made.ok_or_else(|| wrong(format!("clips[{index}]"), velocity, impossible))?;
+            vec![Reference {
+                clip,
+                account: None,
+            }]
         }
-        (None, Some(file), _) => vec![import::load(&base_dir.join(file), &options)?],
+        (None, Some(file), _) => vec![read(&base_dir.join(file), &options)?],
         (None, None, Some(folder)) => tables(&base_dir.join(folder))?
             .iter()
-            .map(|path| import::load(path, &options))
+            .map(|path| read(path, &options))
             .collect::<Result<_, _>>()?,
         (None, None, None) => {
             return Err(wrong(
@@ -45,8 +70,8 @@ pub(super) fn load_clips(
             ));
         }
     };
-    let seconds: f64 = clips.iter().map(Clip::seconds).sum();
-    for clip in &mut clips {
+    let seconds: f64 = clips.iter().map(|reference| reference.clip.seconds()).sum();
+    for Reference { clip, .. } in &mut clips {
         clip.weight = source.weight * (clip.seconds() / seconds) as f32;
     }
     Ok(clips)
@@ -76,6 +101,14 @@ pub(super) fn files(source: &ClipConfig, base_dir: &Path) -> Result<Vec<PathBuf>
 fn has_extension(path: &Path, expected: &str) -> bool {
     path.extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case(expected))
+}
+
+fn read(file: &Path, options: &import::Options) -> Result<Reference, MotionError> {
+    let imported = import::import(file, options)?;
+    Ok(Reference {
+        account: Some(Account::of(&imported, file)),
+        clip: imported.clip,
+    })
 }
 
 /// The tables in a folder, sorted by name: the order must not depend on the file system.

@@ -190,3 +190,31 @@ fn the_same_seed_draws_the_same() {
     };
     assert_eq!(draw(), draw());
 }
+
+#[test]
+fn clips_of_files_are_examined_and_built_in_ones_are_sound() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut moved = gait::walk(1.0).unwrap();
+    for frame in &mut moved.frames[20..] {
+        frame.position.y += 5.0;
+    }
+    let table = |clip| crate::export::to_csv(clip, &["made for a test".into()]);
+    std::fs::write(folder.path().join("moved.csv"), table(&moved)).unwrap();
+    std::fs::write(
+        folder.path().join("sound.csv"),
+        table(&gait::walk(1.0).unwrap()),
+    )
+    .unwrap();
+    let config: MotionConfig =
+        toml::from_str(r#"clips = [{ folder = "." }, { gait = "walk", speed = -0.5 }]"#).unwrap();
+    let references = Dataset::read(&config, folder.path()).unwrap();
+    let kinds: Vec<Vec<crate::quality::Kind>> = references
+        .iter()
+        .map(|reference| reference.defects().iter().map(|d| d.kind).collect())
+        .collect();
+    assert_eq!(
+        kinds,
+        [vec![crate::quality::Kind::Teleport], vec![], vec![]]
+    );
+    assert!((references[0].clip.weight - 0.5).abs() < 1e-6); // half of the folder's weight
+}
