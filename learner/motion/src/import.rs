@@ -20,6 +20,8 @@ mod isaac;
 mod joints;
 mod lean;
 mod leg;
+mod order;
+mod phc;
 mod rate;
 mod resample;
 mod robot;
@@ -123,12 +125,23 @@ pub fn load(path: &Path, options: &Options) -> Result<Clip, MotionError> {
 /// A missing, too large or unreadable file, or the first thing in it that cannot be used, with file,
 /// frame or line, field and remedy.
 pub fn import(path: &Path, options: &Options) -> Result<Imported, MotionError> {
-    let bytes = file::read(path)?;
+    let packed = file::read(path)?;
+    let mut decisions = Vec::new();
+    let unpacked = file::compressed::unpacked(&File {
+        path,
+        bytes: &packed,
+    })?;
+    let bytes = match unpacked {
+        Some((bytes, how)) => {
+            decisions.push(format!("unpacked, it was compressed with {how}"));
+            bytes
+        }
+        None => packed,
+    };
     let file = File {
         path,
         bytes: &bytes,
     };
-    let mut decisions = Vec::new();
     let format = match options.format {
         Some(format) => format,
         None => {
@@ -216,8 +229,9 @@ fn read(
             (isaac::Lab::Humanoid(joints), fps) => (Motion::Human(joints), fps),
         },
         Format::IsaacGym => human(isaac::gym(file, decisions)?),
+        Format::Phc => phc::read(file, options.format.is_some(), decisions)?,
         Format::Gmr => {
-            let (rows, fps) = robot::gmr(file, decisions)?;
+            let (rows, fps) = robot::gmr(file, options.format.is_some(), decisions)?;
             let usual = Some(QuaternionOrder::Xyzw);
             (Motion::Robot(rows, Sure::No { usual }), fps)
         }

@@ -4,7 +4,7 @@
 //! where its joints are at rest, and for the mean body that is published ([`REST`]).
 
 use super::file::File;
-use super::file::array::{ANGLES, PLACES};
+use super::file::array::{ANGLES, Array, PLACES};
 use super::file::npz::Archive;
 use super::human::Joints;
 use crate::error::MotionError;
@@ -54,39 +54,50 @@ pub(super) fn read(
 ) -> Result<(Joints, Option<f64>), MotionError> {
     let mut archive = Archive::open(file)?;
     let trans = archive.numbers("trans")?;
-    trans.check(file, "trans", &[3], PLACES)?;
-    let names = archive.names();
-    let whole = names.iter().any(|name| name == "poses");
-    // Rotations of the root and of the rest, in one array or in two.
-    let (root, body) = if whole {
-        let poses = archive.numbers("poses")?;
-        poses.check(file, "poses", &POSES, ANGLES)?;
-        poses.check_length(file, "poses", (&trans, "trans"))?;
-        (poses.clone(), poses)
-    } else {
-        let (root, body) = (
-            archive.numbers("root_orient")?,
-            archive.numbers("pose_body")?,
-        );
-        root.check(file, "root_orient", &[3], ANGLES)?;
-        body.check(file, "pose_body", &[BODY - 3], ANGLES)?;
-        root.check_length(file, "root_orient", (&trans, "trans"))?;
-        body.check_length(file, "pose_body", (&trans, "trans"))?;
-        (root, body)
-    };
     let fps = archive.scalar(&["mocap_framerate", "mocap_frame_rate", "fps"])?;
-    decisions.push("mean SMPL body, betas not applied: directions need none".into());
-    let skip = if whole { 3 } else { 0 };
+    if archive.names().iter().any(|name| name == "poses") {
+        let poses = archive.numbers("poses")?;
+        let joints = of_poses(file, (&poses, "poses"), (&trans, "trans"), decisions)?;
+        return Ok((joints, fps));
+    }
+    // Rotations of the root and of the rest in arrays of their own.
+    trans.check(file, "trans", &[3], PLACES)?;
+    let (root, body) = (
+        archive.numbers("root_orient")?,
+        archive.numbers("pose_body")?,
+    );
+    root.check(file, "root_orient", &[3], ANGLES)?;
+    body.check(file, "pose_body", &[BODY - 3], ANGLES)?;
+    root.check_length(file, "root_orient", (&trans, "trans"))?;
+    body.check_length(file, "pose_body", (&trans, "trans"))?;
     let frames = (0..trans.frames())
-        .map(|i| posed(trans.frame(i), &root.frame(i)[..3], &body.frame(i)[skip..]))
+        .map(|i| posed(trans.frame(i), root.frame(i), body.frame(i)))
         .collect();
-    Ok((
-        Joints {
-            names: REST.map(|(name, ..)| name.to_owned()).into(),
-            frames,
-        },
-        fps,
-    ))
+    Ok((body_of(frames, decisions), fps))
+}
+
+/// Joint positions from whole poses and the root's places.
+pub(super) fn of_poses(
+    file: &File<'_>,
+    (poses, name): (&Array, &str),
+    (trans, trans_name): (&Array, &str),
+    decisions: &mut Vec<String>,
+) -> Result<Joints, MotionError> {
+    trans.check(file, trans_name, &[3], PLACES)?;
+    poses.check(file, name, &POSES, ANGLES)?;
+    poses.check_length(file, name, (trans, trans_name))?;
+    let frames = (0..trans.frames())
+        .map(|i| posed(trans.frame(i), &poses.frame(i)[..3], &poses.frame(i)[3..]))
+        .collect();
+    Ok(body_of(frames, decisions))
+}
+
+fn body_of(frames: Vec<Vec<Vector3<f64>>>, decisions: &mut Vec<String>) -> Joints {
+    decisions.push("mean SMPL body, betas not applied: directions need none".into());
+    Joints {
+        names: REST.map(|(name, ..)| name.to_owned()).into(),
+        frames,
+    }
 }
 
 /// Forward kinematics of a frame.

@@ -1,9 +1,11 @@
-//! A file in memory, and the containers that formats share: NumPy archives and Python pickles.
+//! A file in memory, and the containers that formats share: NumPy archives, Python
+//! pickles, and what all of them may be packed in.
 //!
 //! Separate because none of them knows motion, and because what can be wrong with a container is the
 //! same for every format inside it.
 
 pub(super) mod array;
+pub(super) mod compressed;
 pub(super) mod npz;
 pub(super) mod pickle;
 

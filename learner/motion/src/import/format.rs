@@ -3,7 +3,9 @@
 //! Separate because names of files lie: half of all `.npz` and `.csv` files hold something else than
 //! the program expects that is given them.
 
+use super::file::pickle::Pickle;
 use super::file::{File, npz};
+use super::phc;
 use crate::error::MotionError;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -31,11 +33,13 @@ pub enum Format {
     IsaacGym,
     /// GMR: a pickle with `root_pos`, `root_rot`, `dof_pos`.
     Gmr,
+    /// PHC, ASAP, PBHC: a pickle of clips with `root_trans_offset`, `root_rot` and `dof`, or `pose_aa`.
+    Phc,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Amass,
         Self::Smplx,
         Self::Bvh,
@@ -45,6 +49,7 @@ impl Format {
         Self::IsaacLab,
         Self::IsaacGym,
         Self::Gmr,
+        Self::Phc,
     ];
 
     /// The name that users write.
@@ -59,6 +64,7 @@ impl Format {
             Self::IsaacLab => "isaaclab",
             Self::IsaacGym => "isaacgym",
             Self::Gmr => "gmr",
+            Self::Phc => "phc",
         }
     }
 }
@@ -98,7 +104,7 @@ pub(super) fn detect(file: &File<'_>) -> Result<(Format, String), MotionError> {
         return Ok((Format::IsaacGym, "a NumPy array of one object".into()));
     }
     if bytes.first() == Some(&0x80) {
-        return Ok((Format::Gmr, "a Python pickle".into()));
+        return detect_pickle(file);
     }
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4096)]);
     let first = text
@@ -119,6 +125,25 @@ pub(super) fn detect(file: &File<'_>) -> Result<(Format, String), MotionError> {
         return Ok((Format::Amc, "Acclaim's keywords".into()));
     }
     Ok((Format::Csv, "a table of numbers".into()))
+}
+
+/// The keys that tell the pickled formats apart.
+fn detect_pickle(file: &File<'_>) -> Result<(Format, String), MotionError> {
+    let pickle = Pickle::read(file, file.bytes)?;
+    let told = |format: Format, keys: &str| Ok((format, format!("a pickle with {keys}")));
+    if phc::is(&pickle) {
+        return told(Format::Phc, "root_trans_offset, root_rot, dof, or pose_aa");
+    }
+    if pickle.has("root_pos") && pickle.has("dof_pos") {
+        return told(Format::Gmr, "root_pos and dof_pos");
+    }
+    Err(file.unusable(
+        &format!(
+            "is a pickle with {}, which no known format has",
+            pickle.keys().join(", ")
+        ),
+        "known are PHC, ASAP and PBHC, and GMR; say which with --format",
+    ))
 }
 
 fn detect_npz(file: &File<'_>) -> Result<(Format, String), MotionError> {
@@ -165,7 +190,10 @@ mod tests {
     #[test]
     fn bytes_are_told_by_their_marks() {
         assert_eq!(told(b"\x93NUMPY\x01\x00"), Ok(Format::IsaacGym));
-        assert_eq!(told(b"\x80\x04\x95"), Ok(Format::Gmr));
+        let message = told(b"\x80\x04\x95").unwrap_err();
+        assert!(message.contains("cut off"), "{message}");
+        let message = told(b"\x80\x04}\x8c\x01aK\x01s.").unwrap_err();
+        assert!(message.contains("pickle with a,"), "{message}");
         let message = told(b"PK\x03\x04 cut off").unwrap_err();
         assert!(message.contains("again"), "{message}");
     }

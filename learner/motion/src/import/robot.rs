@@ -1,8 +1,8 @@
 //! Motions of the G1 in archives and pickles: BeyondMimic and its relatives, and GMR.
 //!
-//! Separate as every format is; these two share that they name no joints. BeyondMimic's files hold
-//! where bodies are, so the order of the joints is told by forward kinematics; GMR's is always that of
-//! the SDK.
+//! Separate as every format is; these two share that they seldom name joints. BeyondMimic's files hold
+//! where bodies are, so the order of the joints is told by forward kinematics; GMR's is that of the SDK,
+//! unless it has 23 joints (see `order.rs`).
 
 use super::Row;
 use super::file::File;
@@ -11,6 +11,7 @@ use super::file::npz::Archive;
 use super::file::pickle::Pickle;
 use super::joints::{self, ISAAC_23, ISAAC_29, SDK_29, Table};
 use super::lean;
+use super::order::{self, Order, Said};
 use crate::config::QuaternionOrder;
 use crate::error::MotionError;
 use g1::kinematics::forward;
@@ -129,9 +130,11 @@ fn feet_gap(rows: &[Row], places: &Array, names: &[&str]) -> f64 {
     sum / f64::max(count, 1.0)
 }
 
-/// Reads a GMR file: rows with the scalar read first (the caller decides), frames per second.
+/// Reads a GMR file: rows with the scalar read first (the caller decides), frames per second. `by_user` if
+/// the user named the format.
 pub(super) fn gmr(
     file: &File<'_>,
+    by_user: bool,
     decisions: &mut Vec<String>,
 ) -> Result<(Vec<Row>, Option<f64>), MotionError> {
     let pickle = Pickle::read(file, file.bytes)?;
@@ -148,32 +151,47 @@ pub(super) fn gmr(
     let fps = pickle
         .array(&["fps"])
         .and_then(|fps| fps.values.first().copied());
-    let ours = joints::ours();
-    // legged_lab's files have the same keys, Isaac Lab's order, and one key more.
-    let isaac = pickle.at(&["loop_mode"]).is_some();
-    let names: &[&str] = match (angles.width(), isaac) {
-        (29, false) => &SDK_29,
-        (29, true) => &ISAAC_29,
-        (23, false) => &ours,
-        (23, true) => &ISAAC_23,
-        _ => {
-            let problem = format!("array dof_pos has the shape {:?}", angles.shape);
-            return Err(file.unusable(&problem, "expected frames of 23 or 29 joints of the G1"));
-        }
-    };
-    let order = if isaac {
-        "Isaac Lab's order (it has a loop_mode)"
-    } else {
-        "the SDK's order"
-    };
-    decisions.push(format!("joints in {order}"));
+    let (angles, names) = columns(file, &pickle, angles, by_user, decisions)?;
     let table = Table {
         position: (&place, "root_pos"),
         orientation: (&turn, "root_rot"),
         joints: (&angles, "dof_pos"),
-        columns: joints::columns(names).expect("known orders have all joints"),
+        columns: joints::columns(&names).expect("known orders have all joints"),
     };
     Ok((table.rows(file, QuaternionOrder::Wxyz)?, fps))
+}
+
+/// The joints of a GMR file and their names.
+fn columns(
+    file: &File<'_>,
+    pickle: &Pickle,
+    angles: Array,
+    by_user: bool,
+    decisions: &mut Vec<String>,
+) -> Result<(Array, Vec<&'static str>), MotionError> {
+    let named = ["joint_names", "dof_names"];
+    if let Some(names) = named.iter().find_map(|key| pickle.words(&[key])) {
+        return order::named(file, (&angles, "dof_pos"), &names, decisions);
+    }
+    // legged_lab's files have the same keys, Isaac Lab's order, and one key more.
+    if pickle.has("loop_mode") {
+        let names = match angles.width() {
+            29 => ISAAC_29.to_vec(),
+            23 => ISAAC_23.to_vec(),
+            _ => {
+                let problem = format!("array dof_pos has the shape {:?}", angles.shape);
+                return Err(file.unusable(&problem, "expected frames of 23 or 29 joints of the G1"));
+            }
+        };
+        decisions.push("joints in Isaac Lab's order (it has a loop_mode)".into());
+        return Ok((angles, names));
+    }
+    let said = if by_user {
+        Said::User(Order::Wrists)
+    } else {
+        Said::Nothing
+    };
+    order::of_g1(file, (&angles, "dof_pos"), said, decisions)
 }
 
 #[cfg(test)]

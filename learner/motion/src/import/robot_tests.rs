@@ -138,7 +138,7 @@ fn the_order_of_joints_is_told_by_where_the_feet_are() {
 fn gmr_gives_29_or_23_joints() {
     for joints in [29, 23] {
         let bytes = gmr_file(joints);
-        let (rows, fps) = gmr(&file(&bytes), &mut Vec::new()).unwrap();
+        let (rows, fps) = gmr(&file(&bytes), false, &mut Vec::new()).unwrap();
         assert_eq!((rows.len(), fps), (walk().len(), Some(50.0)));
         assert!((rows[3].joints[22] - f64::from(walk()[3].joint_positions[22])).abs() < 1e-6);
     }
@@ -182,7 +182,9 @@ fn errors_say_what_is_expected() {
         .integer(30)
         .op(b"s")
         .done();
-    let message = gmr(&file(&bytes), &mut Vec::new()).unwrap_err().to_string();
+    let message = gmr(&file(&bytes), false, &mut Vec::new())
+        .unwrap_err()
+        .to_string();
     assert!(
         message.contains("root_pos") && message.contains("but fps"),
         "{message}"

@@ -1,7 +1,15 @@
 //! The opcodes of a pickle (Python's `pickletools` names them), each of which makes or joins values.
 
 use super::{Id, Pickle, Value};
+use std::cell::Cell;
 use std::collections::HashMap;
+
+/// Most values of a pickle: an hour of a robot's frames as lists of numbers at 120 a second. A byte of a
+/// file can be a value of many bytes in memory.
+const MOST_VALUES: usize = 1 << 24;
+
+/// Where the numbers of PyTorch's tensors come from: the bytes under a name.
+pub(super) type Storages<'a> = Box<dyn FnMut(&str) -> Option<Vec<u8>> + 'a>;
 
 /// A pickle that is being read.
 pub(super) struct Reader<'a> {
@@ -10,20 +18,34 @@ pub(super) struct Reader<'a> {
     pub(super) values: Vec<Value>,
     pub(super) stack: Vec<Id>,
     memo: HashMap<u64, Id>,
+    /// Numbers and bytes that may still be copied out of the file: a few bytes can ask for the same
+    /// array again and again.
+    allowance: Cell<usize>,
+    pub(super) storages: Option<Storages<'a>>,
 }
 
 pub(super) type Outcome<T> = Result<T, String>;
 
 impl<'a> Reader<'a> {
-    /// A reader at the start of a pickle.
-    pub(super) fn new(bytes: &'a [u8]) -> Self {
+    /// A reader at the start of a pickle; `size` is that of the whole file, bytes.
+    pub(super) fn new(bytes: &'a [u8], size: usize, storages: Option<Storages<'a>>) -> Self {
         Self {
             bytes,
             at: 0,
             values: Vec::new(),
             stack: Vec::new(),
             memo: HashMap::new(),
+            allowance: Cell::new(super::allowance(size)),
+            storages,
         }
+    }
+
+    /// Takes from what may be copied.
+    pub(super) fn spend(&self, count: usize) -> Outcome<()> {
+        let left = self.allowance.get().checked_sub(count);
+        self.allowance
+            .set(left.ok_or("it repeats itself to more than its size accounts for")?);
+        Ok(())
     }
 
     pub(super) fn run(mut self) -> Outcome<Pickle> {
@@ -34,7 +56,11 @@ impl<'a> Reader<'a> {
                 return Ok(Pickle {
                     values: self.values,
                     root,
+                    allowance: self.allowance,
                 });
+            }
+            if self.values.len() > MOST_VALUES {
+                return Err(format!("it holds more than {MOST_VALUES} values"));
             }
             self.execute(opcode)?;
         }
@@ -45,6 +71,7 @@ impl<'a> Reader<'a> {
             0x80 => drop(self.take(1)?), // PROTO
             0x95 => drop(self.take(8)?), // FRAME
             b'(' => self.push(Value::Mark),
+            b'0' => drop(self.pop()?),
             b'N' => self.push(Value::None),
             0x88 => self.push(Value::Number(1.0)), // NEWTRUE
             0x89 => self.push(Value::Number(0.0)), // NEWFALSE
@@ -58,7 +85,7 @@ impl<'a> Reader<'a> {
                 let bytes = self.counted(opcode)?;
                 self.push(Value::Bytes(bytes));
             }
-            b']' => self.push(Value::List(Vec::new())),
+            b']' | 0x8f => self.push(Value::List(Vec::new())), // a set is a list to us
             b'}' => self.push(Value::Dict(Vec::new())),
             b')' => self.push(Value::Tuple(Vec::new())),
             0x85..=0x87 => {
@@ -74,7 +101,7 @@ impl<'a> Reader<'a> {
                 let item = self.pop()?;
                 self.extend(&[item])?;
             }
-            b'e' => {
+            b'e' | 0x90 => {
                 let items = self.pop_to_mark()?;
                 self.extend(&items)?;
             }
@@ -95,8 +122,14 @@ impl<'a> Reader<'a> {
                 let (name, module) = (self.pop_text()?, self.pop_text()?);
                 self.push(Value::Name(format!("{module}.{name}")));
             }
+            0x91 => {
+                let items = self.pop_to_mark()?;
+                self.push(Value::List(items)); // FROZENSET
+            }
             b'R' => self.reduce()?,
+            0x81 => self.object()?,
             b'b' => self.build()?,
+            b'Q' => self.storage()?,
             other => return Err(format!("opcode {other:#04x} builds an object")),
         }
         Ok(())
@@ -133,7 +166,7 @@ impl<'a> Reader<'a> {
             _ => 4,
         };
         let length = usize::try_from(self.little(width)?).map_err(|_| "a length beyond memory")?;
-        Ok(self.take(length)?.to_vec())
+        self.taken(length)
     }
 
     fn remember(&mut self, opcode: u8) -> Outcome<()> {
@@ -201,6 +234,11 @@ impl<'a> Reader<'a> {
         let items = self.stack.split_off(mark + 1);
         self.stack.pop();
         Ok(items)
+    }
+
+    /// The next bytes of the file, copied.
+    pub(super) fn taken(&mut self, count: usize) -> Outcome<Vec<u8>> {
+        Ok(self.take(count)?.to_vec())
     }
 
     fn take(&mut self, count: usize) -> Outcome<&[u8]> {
