@@ -97,6 +97,7 @@ fn body_of(frames: Vec<Vec<Vector3<f64>>>, decisions: &mut Vec<String>) -> Joint
     Joints {
         names: REST.map(|(name, ..)| name.to_owned()).into(),
         frames,
+        ..Joints::default()
     }
 }
 

@@ -229,6 +229,7 @@ fn named(skeleton: &Skeleton, frames: Vec<Vec<Vector3<f64>>>) -> Joints {
     Joints {
         names: skeleton.bones.iter().map(|bone| name(&bone.name)).collect(),
         frames,
+        ..Joints::default()
     }
 }
 

@@ -6,7 +6,8 @@
 use super::file::File;
 use super::human::Joints;
 use crate::error::MotionError;
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::{Rotation3, UnitQuaternion, Vector3};
+use std::collections::BTreeMap;
 
 /// A channel of a joint: an axis to move along or to turn about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,8 +44,14 @@ pub(super) fn read(file: &File<'_>) -> Result<(Joints, f64), MotionError> {
     }
     let channels: usize = joints.iter().map(|joint| joint.channels.len()).sum();
     let mut frames = Vec::new();
+    let mut turns: BTreeMap<usize, Vec<UnitQuaternion<f32>>> =
+        last(&joints).map(|joint| (joint, Vec::new())).collect();
     while words.more() {
-        frames.push(frame(&mut words, &joints, channels, frames.len())?);
+        let (places, turned) = frame(&mut words, &joints, channels, frames.len())?;
+        for (&joint, turns) in &mut turns {
+            turns.push(UnitQuaternion::from_rotation_matrix(&turned[joint]).cast());
+        }
+        frames.push(places);
     }
     if frames.len() as f64 != declared {
         let problem = format!(
@@ -53,7 +60,25 @@ pub(super) fn read(file: &File<'_>) -> Result<(Joints, f64), MotionError> {
         );
         return Err(file.unusable(&problem, "download or export it again: it may be cut off"));
     }
-    Ok((Joints { names, frames }, 1.0 / seconds))
+    let parents = joints.iter().map(|joint| joint.parent).collect();
+    let joints = Joints {
+        names,
+        frames,
+        parents,
+        turns,
+    };
+    Ok((joints, 1.0 / seconds))
+}
+
+/// Joints that turn and on which no other does: hands, head, and feet without toes.
+fn last(joints: &[Joint]) -> impl Iterator<Item = usize> + '_ {
+    let turns = |joint: &Joint| !joint.channels.is_empty();
+    let parent = move |at: usize| {
+        joints
+            .iter()
+            .any(|joint| joint.parent == Some(at) && turns(joint))
+    };
+    (0..joints.len()).filter(move |&at| turns(&joints[at]) && !parent(at))
 }
 
 /// Joints and end sites from the hierarchy; an end site is named after its joint, with "End".
@@ -65,11 +90,11 @@ fn hierarchy(words: &mut Words<'_>, names: &mut Vec<String>) -> Result<Vec<Joint
         let (line, word) = words.word("a joint")?;
         match word {
             "ROOT" | "JOINT" | "End" => {
-                let (_, name) = words.word("the joint's name")?;
+                let name = words.name()?;
                 let parent = open.last().copied();
                 names.push(match (word, parent) {
                     ("End", Some(parent)) => format!("{}End", names[parent]),
-                    _ => name.to_owned(),
+                    _ => name,
                 });
                 words.expect("{")?;
                 open.push(joints.len());
@@ -109,13 +134,13 @@ fn hierarchy(words: &mut Words<'_>, names: &mut Vec<String>) -> Result<Vec<Joint
     }
 }
 
-/// Positions of all joints in a frame.
+/// Positions and orientations of all joints in a frame.
 fn frame(
     words: &mut Words<'_>,
     joints: &[Joint],
     channels: usize,
     index: usize,
-) -> Result<Vec<Vector3<f64>>, MotionError> {
+) -> Result<(Vec<Vector3<f64>>, Vec<Rotation3<f64>>), MotionError> {
     let line = words.line();
     let mut numbers = Vec::with_capacity(channels);
     for _ in 0..channels {
@@ -143,7 +168,7 @@ fn frame(
         places.push(place);
         turns.push(before * turn);
     }
-    Ok(places)
+    Ok((places, turns))
 }
 
 /// The words of a file with their lines.
@@ -184,6 +209,17 @@ impl<'a> Words<'a> {
         };
         self.line = line;
         Ok((line, word))
+    }
+
+    /// A joint's name, which may have spaces: the words up to the brace or the end of the line.
+    fn name(&mut self) -> Result<String, MotionError> {
+        let (line, first) = self.word("the joint's name")?;
+        let mut name = first.to_owned();
+        while let Some((_, word)) = self.words.next_if(|(at, word)| *at == line && *word != "{") {
+            name.push(' ');
+            name.push_str(word);
+        }
+        Ok(name)
     }
 
     fn expect(&mut self, expected: &str) -> Result<(), MotionError> {

@@ -96,6 +96,84 @@ fn a_skeleton_of_fourteen_joints_is_a_capture() {
     assert!((capture.travel_speed() - 0.3).abs() < 1e-3);
 }
 
+/// A human that stands, y up and facing z, in inches, with Biped's names, spaces and all, and feet that end
+/// straight below their ankles; the left foot turns about y by so many degrees.
+fn toeless(degrees: &[f64]) -> String {
+    let words = ["Thigh", "Calf", "Foot", "", "UpperArm", "Forearm", "Hand"];
+    let mut text = String::from(
+        "HIERARCHY\nROOT Bip01\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zposition\n",
+    );
+    for (i, (_, place)) in STANDING.iter().enumerate() {
+        if words[i % 7].is_empty() {
+            continue;
+        }
+        let [x, y, z] = place.map(|meters| meters / 0.0254);
+        let side = if i < 7 { "L" } else { "R" };
+        let _ = write!(
+            text,
+            "JOINT Bip01 {side} {} {{\nOFFSET {y} {z} {x}\nCHANNELS 3 Zrotation Xrotation Yrotation\n\
+             End Site\n{{\nOFFSET 0 -3 0\n}}\n}}\n",
+            words[i % 7]
+        );
+    }
+    let _ = write!(
+        text,
+        "}}\nMOTION\nFrames: {}\nFrame Time: 0.02\n",
+        degrees.len()
+    );
+    for (i, degrees) in degrees.iter().enumerate() {
+        // Three channels of the root, then three each of thigh, calf and foot.
+        let rest = " 0".repeat(27);
+        let _ = writeln!(
+            text,
+            "0 0 {} 0 0 0 0 0 0 0 0 {degrees}{rest}",
+            i as f64 / 2.54
+        );
+    }
+    text
+}
+
+#[test]
+fn inches_spaces_in_names_and_feet_without_toes_are_read() {
+    let text = toeless(&[30.0, -30.0, 30.0, -30.0]);
+    let (joints, _) = positions(&text).unwrap();
+    assert_eq!(joints.names[1], "Bip01 L Thigh");
+    let file = File {
+        path: Path::new("x"),
+        bytes: b"",
+    };
+    let mut told = Vec::new();
+    let capture = crate::import::human::capture(&file, &joints, 50.0, &mut told).unwrap();
+    assert!(told.iter().any(|t| t.contains("no toes")), "{told:?}");
+    assert!(
+        told.iter()
+            .any(|t| t.starts_with("unit inches: legs of 0.82")),
+        "{told:?}"
+    );
+    assert!((capture.travel_speed() - 0.5).abs() < 1e-6); // 1 cm a frame
+    // z becomes −y: ahead. A turn to the left about y is one about z.
+    for (i, frame) in capture.frames.iter().enumerate() {
+        for (side, degrees) in [(retarget::Side::Left, 30.0), (retarget::Side::Right, 0.0)] {
+            let toe = frame.of(side, retarget::Landmark::Toe);
+            let way = toe - frame.of(side, retarget::Landmark::Ankle);
+            let expected = if i % 2 == 0 { degrees } else { -degrees };
+            let yaw = way.x.atan2(-way.y).to_degrees();
+            assert!(
+                (yaw - expected).abs() < 0.01 && way.z.abs() < 1e-6,
+                "{i} {side:?}: {way}"
+            );
+            // 0.18 of the leg of 0.821 m.
+            assert!((way.norm() - 0.1478).abs() < 1e-3, "{}", way.norm());
+        }
+    }
+    // Joints that never turn do not say how feet point.
+    let still = toeless(&[]).replace("CHANNELS 3 Zrotation Xrotation Yrotation", "CHANNELS 0");
+    let still = still.replace("Frames: 0", "Frames: 1") + "0 0 0\n";
+    let (joints, _) = positions(&still).unwrap();
+    let message = crate::import::human::capture(&file, &joints, 50.0, &mut Vec::new()).unwrap_err();
+    assert!(message.to_string().contains("left toe"), "{message}");
+}
+
 #[test]
 fn errors_name_line_or_frame() {
     for (text, parts) in [

@@ -1,13 +1,21 @@
-//! From the joints of any skeleton to a capture: names, up, unit.
+//! From the joints of any skeleton to a capture: which joint is which, up, unit.
 //!
 //! Separate because every format of human motion passes here. Files say neither which axis points up
 //! nor what their unit is; both are told from the body itself, and shown.
 
+mod columns;
+mod feet;
+mod hierarchy;
+mod names;
+
 use super::file::File;
 use super::{calibration, resample};
 use crate::error::MotionError;
-use nalgebra::{Point3, Vector3};
+use feet::Toes;
+use nalgebra::{Point3, UnitQuaternion, Vector3};
+use names::Names;
 use retarget::{Capture, LANDMARKS, Landmark, Landmarks, Side};
+use std::collections::BTreeMap;
 
 /// Joint positions over time, as a file has them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,41 +23,20 @@ pub(super) struct Joints {
     pub(super) names: Vec<String>,
     /// Positions in every frame, in the order of `names`, in the file's unit and axes.
     pub(super) frames: Vec<Vec<Vector3<f64>>>,
+    /// The joint that each hangs on; empty if the file does not say.
+    pub(super) parents: Vec<Option<usize>>,
+    /// How joints turn in every frame, of those that may be ankles without toes.
+    pub(super) turns: BTreeMap<usize, Vec<UnitQuaternion<f32>>>,
 }
 
-/// Names of a joint, without side, in the order in which they are looked for: some mean another joint
-/// in another skeleton ("LeftLeg" is a shin unless there is a "LeftShin").
-const NAMES: [(Landmark, &[&str]); 7] = [
-    (
-        Landmark::Hip,
-        &["upleg", "thigh", "upperleg", "hip", "femur", "leg"],
-    ),
-    (
-        Landmark::Knee,
-        &["shin", "lowerleg", "knee", "calf", "tibia", "leg"],
-    ),
-    (Landmark::Ankle, &["ankle", "foot"]),
-    (
-        Landmark::Toe,
-        &["toebase", "toe", "toes", "ball", "foottoe", "footend"],
-    ),
-    (
-        Landmark::Shoulder,
-        &["arm", "upperarm", "uparm", "humerus", "shoulder"],
-    ),
-    (
-        Landmark::Elbow,
-        &["forearm", "lowerarm", "elbow", "lowarm", "radius"],
-    ),
-    (Landmark::Wrist, &["wrist", "hand"]),
-];
-
 /// Units that captures come in, m. Those of CMU are inches over 0.45.
-const UNITS: [(f64, &str); 4] = [
+const UNITS: [(f64, &str); 6] = [
     (1.0, "m"),
     (0.01, "cm"),
     (0.001, "mm"),
     (0.0254 / 0.45, "inches/0.45"),
+    (0.0254, "inches"),
+    (0.3048, "feet"),
 ];
 /// Thigh and shin together of an adult, m, and how far from it a body may be.
 const USUAL_LEG: f64 = 0.84;
@@ -69,21 +56,15 @@ pub(super) fn capture(
     if joints.frames.is_empty() {
         return Err(file.unusable("holds no frames", "export the motion again"));
     }
-    let columns = columns(file, &joints.names)?;
-    for (i, frame) in joints.frames.iter().enumerate() {
-        for (landmark, &column) in columns.iter().enumerate() {
-            if !frame[column].iter().all(|x| x.is_finite()) {
-                let field = &joints.names[columns[landmark]];
-                let problem = "the position is not finite".into();
-                return Err(file.frame(i, field, problem, "repair or cut the frame"));
-            }
-        }
-    }
-    let frames: Vec<Landmarks> = joints
-        .frames
-        .iter()
-        .map(|frame| Landmarks(columns.map(|column| Point3::from(frame[column]))))
-        .collect();
+    let names = Names::of(&joints.names);
+    let (columns, toe_columns) = columns::of(file, joints, &names, decisions)?;
+    check_finite(file, joints, &columns)?;
+    let of = |side, landmark| columns[Landmarks::index(side, landmark)];
+    let up = up(joints, &of);
+    let Some(toes) = feet::toes(joints, &names, toe_columns, &of, up) else {
+        return Err(columns::missing(file, joints, Side::Left, Landmark::Toe));
+    };
+    let frames = landmarks(file, joints, &columns, toes, decisions)?;
     let mut capture = Capture { fps, frames };
     stand_up(file, &mut capture, decisions)?;
     to_metres(file, &mut capture, decisions)?;
@@ -93,78 +74,65 @@ pub(super) fn capture(
     Ok(capture)
 }
 
-/// The column of each landmark.
-fn columns(file: &File<'_>, names: &[String]) -> Result<[usize; LANDMARKS], MotionError> {
-    let mut columns = [0; LANDMARKS];
-    for side in Side::BOTH {
-        let mut taken: Vec<usize> = Vec::new();
-        // From the foot up and from the hand up: outer joints have the clearer names.
-        for landmark in Landmark::ALL {
-            let (_, stems) = NAMES[landmark as usize];
-            let found = stems
-                .iter()
-                .filter(|stem| {
-                    !(**stem == "leg" && landmark == Landmark::Hip && !has_shin(names, side))
-                })
-                .find_map(|stem| {
-                    (0..names.len()).find(|i| !taken.contains(i) && is(&names[*i], side, stem))
-                });
-            let Some(column) = found else {
-                let side = if side == Side::Left { "left" } else { "right" };
-                return Err(file.unusable(
-                    &format!(
-                        "has no joint for the {side} {} (but {})",
-                        landmark.name(),
-                        shortened(names)
-                    ),
-                    "rename the joint, for example LeftUpLeg, LeftLeg, LeftFoot, LeftToeBase, LeftArm, \
-                     LeftForeArm, LeftHand",
+fn check_finite(file: &File<'_>, joints: &Joints, columns: &[usize]) -> Result<(), MotionError> {
+    for (i, frame) in joints.frames.iter().enumerate() {
+        for &column in columns {
+            if !frame[column].iter().all(|x| x.is_finite()) {
+                let problem = "the position is not finite".into();
+                return Err(file.frame(
+                    i,
+                    &joints.names[column],
+                    problem,
+                    "repair or cut the frame",
                 ));
-            };
-            taken.push(column);
-            columns[Landmarks::index(side, landmark)] = column;
+            }
         }
     }
-    Ok(columns)
+    Ok(())
 }
 
-fn has_shin(names: &[String], side: Side) -> bool {
-    names.iter().any(|name| is(name, side, "shin"))
-}
-
-/// Whether a joint's name is a side and a stem, in any of the usual ways: LeftFoot, left_foot, L_Foot,
-/// Foot_L, lfoot, mixamorig:LeftFoot.
-fn is(name: &str, side: Side, stem: &str) -> bool {
-    let name = name.rsplit(':').next().unwrap_or(name);
-    let plain: String = name
-        .chars()
-        .filter(char::is_ascii_alphanumeric)
-        .map(|c| c.to_ascii_lowercase())
-        .collect();
-    let (word, letter) = if side == Side::Left {
-        ("left", "l")
-    } else {
-        ("right", "r")
+/// The axis that points up, y or z: the one along which shoulders are above ankles.
+fn up(joints: &Joints, of: &dyn Fn(Side, Landmark) -> usize) -> Vector3<f64> {
+    let rise = |frame: &Vec<Vector3<f64>>| {
+        let way =
+            frame[of(Side::Left, Landmark::Shoulder)] - frame[of(Side::Left, Landmark::Ankle)];
+        way.try_normalize(1e-9).unwrap_or_default()
     };
-    let parts = name.split(['_', '.', '-', ' ']).count() > 1;
-    plain.strip_prefix(word) == Some(stem)
-        || plain.strip_suffix(word) == Some(stem)
-        || plain.strip_prefix(letter) == Some(stem)
-        || (parts && plain.strip_suffix(letter) == Some(stem))
+    let rise: Vector3<f64> = joints.frames.iter().map(rise).sum();
+    if rise.y > rise.z {
+        Vector3::y()
+    } else {
+        Vector3::z()
+    }
 }
 
-fn shortened(names: &[String]) -> String {
-    const SHOWN: usize = 12;
-    let shown = names
-        .iter()
-        .take(SHOWN)
-        .cloned()
-        .collect::<Vec<_>>()
-        .join(", ");
-    match names.len().checked_sub(SHOWN) {
-        Some(more @ 1..) => format!("{shown} and {more} more"),
-        _ => shown,
+/// The landmarks of all frames, with their toes.
+fn landmarks(
+    file: &File<'_>,
+    joints: &Joints,
+    columns: &[usize; LANDMARKS],
+    toes: Toes,
+    decisions: &mut Vec<String>,
+) -> Result<Vec<Landmarks>, MotionError> {
+    let at = Side::BOTH.map(|side| Landmarks::index(side, Landmark::Toe));
+    let mut columns = *columns;
+    if let Toes::Joints(toes) = toes {
+        (columns[at[0]], columns[at[1]]) = (toes[0], toes[1]);
+        check_finite(file, joints, &toes)?;
     }
+    let of_frame = |frame: &Vec<Vector3<f64>>| columns.map(|column| Point3::from(frame[column]));
+    let mut frames: Vec<Landmarks> = joints
+        .frames
+        .iter()
+        .map(|frame| Landmarks(of_frame(frame)))
+        .collect();
+    if let Toes::Made(places, told) = toes {
+        for (frame, places) in frames.iter_mut().zip(places) {
+            (frame.0[at[0]], frame.0[at[1]]) = (places[0].into(), places[1].into());
+        }
+        decisions.push(told);
+    }
+    Ok(frames)
 }
 
 /// Turns the capture so that z points up: the axis along which shoulders are above ankles.
@@ -204,22 +172,28 @@ fn to_metres(
 ) -> Result<(), MotionError> {
     let leg = capture.leg_length();
     let misfit = |unit: f64| (leg * unit / USUAL_LEG).ln().abs();
-    let (unit, name) = UNITS
-        .into_iter()
-        .min_by(|a, b| misfit(a.0).total_cmp(&misfit(b.0)))
-        .expect("there are units");
+    let mut units = UNITS;
+    units.sort_by(|a, b| misfit(a.0).total_cmp(&misfit(b.0)));
+    let [(unit, name), (other, other_name), ..] = units;
     if !LEGS.contains(&(leg * unit)) {
         return Err(file.unusable(
-            &format!("has legs {leg:.3} long, which is no human in m, cm, mm or inches/0.45"),
+            &format!("has legs {leg:.3} long, which is no human in m, cm, mm, inches, feet or inches/0.45"),
             "scale the motion to metres",
         ));
     }
     for point in capture.frames.iter_mut().flat_map(|frame| &mut frame.0) {
         point.coords *= unit;
     }
-    decisions.push(format!("unit {name}: legs of {:.3} m", leg * unit));
+    let or = if LEGS.contains(&(leg * other)) {
+        format!(" (or {other_name}: {:.3} m)", leg * other)
+    } else {
+        String::new()
+    };
+    decisions.push(format!("unit {name}: legs of {:.3} m{or}", leg * unit));
     Ok(())
 }
 
+#[cfg(test)]
+mod skeleton_tests;
 #[cfg(test)]
 pub(super) mod tests;

@@ -208,6 +208,7 @@ fn with_toes(names: Vec<String>, frames: &[Vec<Isometry3<f64>>]) -> Joints {
     Joints {
         names: with_toes,
         frames: frames.iter().map(place).collect(),
+        ..Joints::default()
     }
 }
 

@@ -245,7 +245,7 @@ fn a_few_bytes_cannot_ask_for_all_memory() {
     }
     let message = read(&writer.op(b"e").done()).unwrap_err();
     assert!(message.contains("size accounts for"), "{message}");
-    let values = Writer::new().op(&b"N".repeat((1 << 24) + 2)).done();
+    let values = Writer::new().op(&b"N".repeat((1 << 16) + 2)).done();
     assert!(read(&values).unwrap_err().contains("values"));
 }
 
