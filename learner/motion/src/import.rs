@@ -8,26 +8,31 @@
 
 mod amass;
 mod amc;
+mod amp_rsl_rl;
 mod bounds;
 mod bvh;
 mod calibration;
 mod csv;
 mod file;
 mod format;
+mod frames;
 mod ground;
 mod human;
 mod isaac;
 mod joints;
 mod lean;
 mod leg;
+mod mimickit;
 mod order;
 mod phc;
+mod proto;
 mod rate;
 mod resample;
 mod robot;
+mod skeleton;
 mod upright;
 
-pub use format::Format;
+pub use format::{Format, is_body_shape, is_text_of_frames};
 
 use crate::clip::Clip;
 use crate::config::QuaternionOrder;
@@ -97,6 +102,7 @@ struct Row {
 }
 
 /// What a format's reader gives.
+#[derive(Debug)]
 enum Motion {
     /// The G1; its quaternions are sure, or to be decided with this as usual order.
     Robot(Vec<Row>, Sure),
@@ -106,6 +112,7 @@ enum Motion {
 }
 
 /// Whether quaternions are in a known order.
+#[derive(Debug)]
 enum Sure {
     Yes,
     No { usual: Option<QuaternionOrder> },
@@ -229,6 +236,15 @@ fn read(
             (isaac::Lab::Humanoid(joints), fps) => (Motion::Human(joints), fps),
         },
         Format::IsaacGym => human(isaac::gym(file, decisions)?),
+        Format::MimicKit => mimickit::read(file, decisions)?,
+        Format::ProtoMotions => proto::read(file, decisions)?,
+        Format::DeepMimic => frames::deepmimic(file, decisions)?,
+        Format::TienKung => frames::tienkung(file, decisions)?,
+        Format::AmpRslRl => {
+            let (rows, fps) = amp_rsl_rl::read(file, decisions)?;
+            let usual = Some(QuaternionOrder::Xyzw);
+            (Motion::Robot(rows, Sure::No { usual }), fps)
+        }
         Format::Phc => phc::read(file, options.format.is_some(), decisions)?,
         Format::Gmr => {
             let (rows, fps) = robot::gmr(file, options.format.is_some(), decisions)?;

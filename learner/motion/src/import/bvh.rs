@@ -47,11 +47,11 @@ pub(super) fn read(file: &File<'_>) -> Result<(Joints, f64), MotionError> {
     let mut turns: BTreeMap<usize, Vec<UnitQuaternion<f32>>> =
         last(&joints).map(|joint| (joint, Vec::new())).collect();
     while words.more() {
-        let (places, turned) = frame(&mut words, &joints, channels, frames.len())?;
+        let pose = frame(&mut words, &joints, channels, frames.len())?;
         for (&joint, turns) in &mut turns {
-            turns.push(UnitQuaternion::from_rotation_matrix(&turned[joint]).cast());
+            turns.push(UnitQuaternion::from_rotation_matrix(&pose.turns[joint]).cast());
         }
-        frames.push(places);
+        frames.push(pose.places);
     }
     if frames.len() as f64 != declared {
         let problem = format!(
@@ -134,13 +134,18 @@ fn hierarchy(words: &mut Words<'_>, names: &mut Vec<String>) -> Result<Vec<Joint
     }
 }
 
-/// Positions and orientations of all joints in a frame.
+/// All joints in a frame.
+struct Pose {
+    places: Vec<Vector3<f64>>,
+    turns: Vec<Rotation3<f64>>,
+}
+
 fn frame(
     words: &mut Words<'_>,
     joints: &[Joint],
     channels: usize,
     index: usize,
-) -> Result<(Vec<Vector3<f64>>, Vec<Rotation3<f64>>), MotionError> {
+) -> Result<Pose, MotionError> {
     let line = words.line();
     let mut numbers = Vec::with_capacity(channels);
     for _ in 0..channels {
@@ -168,7 +173,7 @@ fn frame(
         places.push(place);
         turns.push(before * turn);
     }
-    Ok((places, turns))
+    Ok(Pose { places, turns })
 }
 
 /// The words of a file with their lines.

@@ -1,4 +1,4 @@
-//! A file in memory, and the containers that formats share: NumPy archives, Python
+//! A file in memory, and the containers that formats share: NumPy's and PyTorch's archives, Python
 //! pickles, and what all of them may be packed in.
 //!
 //! Separate because none of them knows motion, and because what can be wrong with a container is the
@@ -8,6 +8,7 @@ pub(super) mod array;
 pub(super) mod compressed;
 pub(super) mod npz;
 pub(super) mod pickle;
+pub(super) mod torch;
 
 use crate::error::MotionError;
 use std::io::{self, Read};

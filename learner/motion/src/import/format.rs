@@ -4,11 +4,13 @@
 //! the program expects that is given them.
 
 use super::file::pickle::Pickle;
-use super::file::{File, npz};
-use super::phc;
+use super::file::{File, npz, torch};
+use super::{amp_rsl_rl, frames, mimickit, phc, proto};
 use crate::error::MotionError;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::io::Read;
+use std::path::Path;
 use std::str::FromStr;
 
 /// The formats that can be read.
@@ -35,11 +37,22 @@ pub enum Format {
     Gmr,
     /// PHC, ASAP, PBHC: a pickle of clips with `root_trans_offset`, `root_rot` and `dof`, or `pose_aa`.
     Phc,
+    /// MimicKit: a pickle with `frames`.
+    MimicKit,
+    /// ProtoMotions: PyTorch's archive with `rigid_body_pos`.
+    ProtoMotions,
+    /// amp-rsl-rl: `joints_list`, `joint_positions`, `root_position`, in an `.npy` or `.npz`.
+    #[serde(rename = "amp-rsl-rl")]
+    AmpRslRl,
+    /// DeepMimic: JSON with `Frames` of 44 numbers.
+    DeepMimic,
+    /// TienKung-Lab and its relatives: JSON with `FrameDuration` and `Frames`.
+    TienKung,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 15] = [
         Self::Amass,
         Self::Smplx,
         Self::Bvh,
@@ -50,6 +63,11 @@ impl Format {
         Self::IsaacGym,
         Self::Gmr,
         Self::Phc,
+        Self::MimicKit,
+        Self::ProtoMotions,
+        Self::AmpRslRl,
+        Self::DeepMimic,
+        Self::TienKung,
     ];
 
     /// The name that users write.
@@ -65,6 +83,11 @@ impl Format {
             Self::IsaacGym => "isaacgym",
             Self::Gmr => "gmr",
             Self::Phc => "phc",
+            Self::MimicKit => "mimickit",
+            Self::ProtoMotions => "protomotions",
+            Self::AmpRslRl => "amp-rsl-rl",
+            Self::DeepMimic => "deepmimic",
+            Self::TienKung => "tienkung",
         }
     }
 }
@@ -87,11 +110,12 @@ impl FromStr for Format {
 }
 
 /// The arrays that tell the `.npz` formats apart.
-const ARRAYS: [(Format, [&str; 2]); 4] = [
+const ARRAYS: [(Format, [&str; 2]); 5] = [
     (Format::Smplx, ["pose_body", "root_orient"]),
     (Format::Amass, ["poses", "trans"]),
     (Format::BeyondMimic, ["joint_pos", "body_pos_w"]),
     (Format::IsaacLab, ["body_names", "body_positions"]),
+    (Format::AmpRslRl, ["joints_list", "joint_positions"]),
 ];
 
 /// The format of a file and by what it was told.
@@ -101,6 +125,10 @@ pub(super) fn detect(file: &File<'_>) -> Result<(Format, String), MotionError> {
         return detect_npz(file);
     }
     if bytes.starts_with(b"\x93NUMPY") {
+        let dictionary = Pickle::of_npy(file)?;
+        if amp_rsl_rl::is(&dictionary) {
+            return Ok((Format::AmpRslRl, "joints_list and joint_positions".into()));
+        }
         return Ok((Format::IsaacGym, "a NumPy array of one object".into()));
     }
     if bytes.first() == Some(&0x80) {
@@ -112,6 +140,9 @@ pub(super) fn detect(file: &File<'_>) -> Result<(Format, String), MotionError> {
         .map(|line| line.trim_start_matches('\u{feff}').trim())
         .find(|line| !line.is_empty() && !line.starts_with('#'))
         .unwrap_or("");
+    if first.starts_with('{') {
+        return detect_json(file);
+    }
     if first.eq_ignore_ascii_case("HIERARCHY") {
         return Ok((Format::Bvh, "HIERARCHY in its first line".into()));
     }
@@ -127,10 +158,30 @@ pub(super) fn detect(file: &File<'_>) -> Result<(Format, String), MotionError> {
     Ok((Format::Csv, "a table of numbers".into()))
 }
 
+fn detect_json(file: &File<'_>) -> Result<(Format, String), MotionError> {
+    match frames::is_deepmimic(&file.text()) {
+        Some(true) => Ok((Format::DeepMimic, "JSON with Frames".into())),
+        Some(false) => Ok((
+            Format::TienKung,
+            "JSON with FrameDuration and Frames".into(),
+        )),
+        None => Err(file.unusable(
+            "is JSON without Frames, which no known format is",
+            "known are the clips of DeepMimic and of TienKung-Lab",
+        )),
+    }
+}
+
 /// The keys that tell the pickled formats apart.
 fn detect_pickle(file: &File<'_>) -> Result<(Format, String), MotionError> {
     let pickle = Pickle::read(file, file.bytes)?;
     let told = |format: Format, keys: &str| Ok((format, format!("a pickle with {keys}")));
+    if mimickit::is(&pickle) {
+        return told(Format::MimicKit, "frames");
+    }
+    if proto::is(&pickle) {
+        return told(Format::ProtoMotions, "rigid_body_pos");
+    }
     if phc::is(&pickle) {
         return told(Format::Phc, "root_trans_offset, root_rot, dof, or pose_aa");
     }
@@ -142,11 +193,24 @@ fn detect_pickle(file: &File<'_>) -> Result<(Format, String), MotionError> {
             "is a pickle with {}, which no known format has",
             pickle.keys().join(", ")
         ),
-        "known are PHC, ASAP and PBHC, and GMR; say which with --format",
+        "known are PHC, ASAP and PBHC, GMR, and MimicKit; say which with --format",
     ))
 }
 
 fn detect_npz(file: &File<'_>) -> Result<(Format, String), MotionError> {
+    if let Some(pickle) = torch::read(file)? {
+        if proto::is(&pickle) {
+            let told = "PyTorch's archive with rigid_body_pos";
+            return Ok((Format::ProtoMotions, told.into()));
+        }
+        return Err(file.unusable(
+            &format!(
+                "is PyTorch's archive of {}, which no known format has",
+                pickle.keys().join(", ")
+            ),
+            "known are ProtoMotions' .motion and .pt",
+        ));
+    }
     let archive = npz::Archive::open(file)?;
     let names = archive.names();
     let has = |name: &&str| names.iter().any(|n| n == name);
@@ -155,19 +219,59 @@ fn detect_npz(file: &File<'_>) -> Result<(Format, String), MotionError> {
             return Ok((format, format!("arrays {} and {}", arrays[0], arrays[1])));
         }
     }
+    if is_shape(&names) {
+        return Err(file.unusable(
+            "holds the shape of a body and no motion",
+            "import the motions beside it; shapes in folders are passed over",
+        ));
+    }
     Err(file.unusable(
         &format!(
             "holds the arrays {}, which no known format has",
             names.join(", ")
         ),
-        "known are AMASS, SMPL-X, BeyondMimic and Isaac Lab; say which with --format",
+        "known are AMASS, SMPL-X, BeyondMimic, Isaac Lab and amp-rsl-rl; say which with --format",
     ))
+}
+
+/// Whether arrays are those of AMASS's `shape.npz` and `…_stagei.npz`: betas, and nothing that moves.
+fn is_shape(names: &[String]) -> bool {
+    let has = |name: &str| names.iter().any(|n| n == name);
+    let moves = ["poses", "pose_body", "trans", "root_orient"];
+    (has("betas") || has("beta")) && !moves.into_iter().any(has)
+}
+
+/// Whether a file is a body's shape without motion, as AMASS puts one beside every subject's motions.
+/// Files that cannot be read, and large ones, are none.
+pub fn is_body_shape(path: &Path) -> bool {
+    const LARGEST: u64 = 4 << 20;
+    let small = std::fs::metadata(path).is_ok_and(|file| file.is_file() && file.len() <= LARGEST);
+    let Some(bytes) = small.then(|| std::fs::read(path).ok()).flatten() else {
+        return false;
+    };
+    let file = File {
+        path,
+        bytes: &bytes,
+    };
+    bytes.starts_with(b"PK")
+        && npz::Archive::open(&file).is_ok_and(|archive| is_shape(&archive.names()))
+}
+
+/// Whether a text file is a clip of `Frames` by its beginning: other JSON and notes lie beside motions.
+pub fn is_text_of_frames(path: &Path) -> bool {
+    const BEGINNING: u64 = 4096;
+    let mut begin = Vec::new();
+    let read =
+        std::fs::File::open(path).and_then(|file| file.take(BEGINNING).read_to_end(&mut begin));
+    let text = String::from_utf8_lossy(&begin);
+    let text = text.trim_start_matches('\u{feff}').trim_start();
+    read.is_ok() && text.starts_with('{') && text.contains("\"Frames\"")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::path::Path;
+    use crate::import::file::npz::tests::Builder;
 
     fn told(bytes: &[u8]) -> Result<Format, String> {
         let path = Path::new("motion");
@@ -183,19 +287,88 @@ mod tests {
         assert_eq!(told(b"#!OML:ASF x\n:FULLY-SPECIFIED\n"), Ok(Format::Amc));
         assert_eq!(told(b"x,y,z\n1,2,3"), Ok(Format::Csv));
         assert_eq!(told(b""), Ok(Format::Csv));
+        assert_eq!(
+            told(b"{\n\"Loop\": \"wrap\", \"Frames\": []}"),
+            Ok(Format::DeepMimic)
+        );
+        assert_eq!(
+            told(b"{\"FrameDuration\": 1, \"Frames\": []}"),
+            Ok(Format::TienKung)
+        );
+        assert!(
+            told(b"{\"name\": \"walk\"}")
+                .unwrap_err()
+                .contains("without Frames")
+        );
         let message = told(b":version 1.10\n:bonedata").unwrap_err();
         assert!(message.contains(".amc"), "{message}");
     }
 
     #[test]
     fn bytes_are_told_by_their_marks() {
-        assert_eq!(told(b"\x93NUMPY\x01\x00"), Ok(Format::IsaacGym));
+        let message = told(b"\x93NUMPY\x01\x00").unwrap_err();
+        assert!(message.contains("cut off"), "{message}");
         let message = told(b"\x80\x04\x95").unwrap_err();
         assert!(message.contains("cut off"), "{message}");
         let message = told(b"\x80\x04}\x8c\x01aK\x01s.").unwrap_err();
         assert!(message.contains("pickle with a,"), "{message}");
         let message = told(b"PK\x03\x04 cut off").unwrap_err();
         assert!(message.contains("again"), "{message}");
+    }
+
+    #[test]
+    fn the_shape_of_a_body_is_no_motion() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        // AMASS's shape.npz and SMPL-X's …_stagei.npz.
+        let shape = Builder::new()
+            .numbers("betas", &[16], &[0.0; 16])
+            .words("gender", &["male"]);
+        let markers = Builder::new().numbers("betas", &[16], &[0.0; 16]).numbers(
+            "markers_latent",
+            &[1, 3],
+            &[0.0; 3],
+        );
+        let motion =
+            Builder::new()
+                .numbers("betas", &[16], &[0.0; 16])
+                .numbers("poses", &[1, 1], &[0.0]);
+        for (name, archive, expected) in [
+            ("shape.npz", shape, true),
+            ("male_stagei.npz", markers, true),
+            ("walk.npz", motion, false),
+        ] {
+            let bytes = archive.done();
+            std::fs::write(path(name), &bytes).unwrap();
+            assert_eq!(is_body_shape(&path(name)), expected, "{name}");
+            let message = told(&bytes).unwrap_err();
+            assert_eq!(
+                message.contains("shape of a body and no motion"),
+                expected,
+                "{message}"
+            );
+        }
+        std::fs::write(path("cut.npz"), b"PK\x03\x04").unwrap();
+        for name in ["cut.npz", "none.npz", "."] {
+            assert!(!is_body_shape(&path(name)), "{name}");
+        }
+    }
+
+    #[test]
+    fn clips_among_text_files_are_told_by_their_beginning() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        for (text, expected) in [
+            ("{\n\"Loop\": \"wrap\",\n\"Frames\":\n[", true),
+            ("\u{feff} {\"Frames\": []}", true),
+            ("{\"name\": \"walk\", \"defects\": []}", false),
+            ("The word \"Frames\"", false),
+            ("", false),
+        ] {
+            std::fs::write(&path, text).unwrap();
+            assert_eq!(is_text_of_frames(&path), expected, "{text}");
+        }
+        assert!(!is_text_of_frames(folder.path()));
     }
 
     #[test]

@@ -49,6 +49,42 @@ fn every_format_becomes_a_clip_by_its_content() {
         ("e.npy", isaac::tests::gym_file(60), Format::IsaacGym, 60.0),
         ("f.pkl", robot::tests::gmr_file(29), Format::Gmr, 50.0),
         (
+            "h.pkl",
+            phc::tests::Clip::asap(30).file(),
+            Format::Phc,
+            30.0,
+        ),
+        (
+            "i.pkl",
+            mimickit::tests::file_of(&vec![mimickit::tests::standing(); 30]),
+            Format::MimicKit,
+            30.0,
+        ),
+        (
+            "j.motion",
+            proto::tests::walk(&joints::SDK_29),
+            Format::ProtoMotions,
+            50.0,
+        ),
+        (
+            "k.npy",
+            amp_rsl_rl::tests::npy(&amp_rsl_rl::tests::names(), 30),
+            Format::AmpRslRl,
+            50.0,
+        ),
+        (
+            "l.json",
+            frames::tests::deepmimic_clip(30).into_bytes(),
+            Format::DeepMimic,
+            50.0,
+        ),
+        (
+            "m.txt",
+            frames::tests::tienkung_clip(29, [0.0; 3]).into_bytes(),
+            Format::TienKung,
+            50.0,
+        ),
+        (
             "g.csv",
             crate::export::to_csv(&gait::walk(1.0).unwrap(), &[]).into_bytes(),
             Format::Csv,
@@ -73,7 +109,16 @@ fn every_format_becomes_a_clip_by_its_content() {
             "{name}"
         );
         assert!(!result.decisions.is_empty(), "{name}");
-        let human = !matches!(format, Format::BeyondMimic | Format::Gmr | Format::Csv);
+        let human = !matches!(
+            format,
+            Format::BeyondMimic
+                | Format::Gmr
+                | Format::Csv
+                | Format::Phc
+                | Format::ProtoMotions
+                | Format::AmpRslRl
+                | Format::TienKung
+        );
         assert_eq!(result.retargeting.is_some(), human, "{name}");
         let quality = Quality::of(&result.clip);
         assert!(

@@ -15,7 +15,6 @@ use super::lean;
 use crate::config::QuaternionOrder;
 use crate::error::MotionError;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
-use npyz::NpyFile;
 
 /// What an Isaac Lab file holds.
 pub(super) enum Lab {
@@ -80,21 +79,7 @@ pub(super) fn gym(
     file: &File<'_>,
     decisions: &mut Vec<String>,
 ) -> Result<(Joints, Option<f64>), MotionError> {
-    let cut = || {
-        file.unusable(
-            "is no readable .npy file",
-            "download or export it again: it may be cut off",
-        )
-    };
-    let npy = NpyFile::new(file.bytes).map_err(|_| cut())?;
-    if !npy.uses_pickled_array() {
-        return Err(file.unusable(
-            "is a plain array of numbers, which does not say what they are",
-            "give a skeleton motion as Isaac Gym saves it, or one of the other formats",
-        ));
-    }
-    let rest = npy.into_inner();
-    let pickle = Pickle::read(file, rest)?;
+    let pickle = Pickle::of_npy(file)?;
     let part = |path: &[&str]| {
         pickle.array(path).ok_or_else(|| {
             let keys = pickle.keys().join(", ");
@@ -192,7 +177,7 @@ fn bodies_in_frames(
 }
 
 /// Positions of bodies, and a toe 15 cm ahead of each foot.
-fn with_toes(names: Vec<String>, frames: &[Vec<Isometry3<f64>>]) -> Joints {
+pub(super) fn with_toes(names: Vec<String>, frames: &[Vec<Isometry3<f64>>]) -> Joints {
     let feet: Vec<usize> = (0..names.len())
         .filter(|&i| names[i].ends_with("foot"))
         .collect();

@@ -212,6 +212,12 @@ pub(super) fn quaternion(numbers: &[f64], order: QuaternionOrder) -> Quaternion<
     }
 }
 
+/// Orientations as an array, scalar first.
+pub(super) fn quaternions(turns: &[UnitQuaternion<f64>]) -> Array {
+    let values = turns.iter().flat_map(|q| [q.w, q.i, q.j, q.k]).collect();
+    Array::of(vec![turns.len(), 4], values, false).expect("four numbers each")
+}
+
 /// A quaternion of another length than 1 is another order, or none. Files keep about six digits.
 pub(super) fn check_unit(
     file: &File<'_>,

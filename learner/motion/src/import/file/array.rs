@@ -48,6 +48,15 @@ impl Array {
         &self.values[i * width..(i + 1) * width]
     }
 
+    /// `width` numbers of every frame, from `from` on.
+    pub(in crate::import) fn part(&self, from: usize, width: usize) -> Self {
+        let values = (0..self.frames()).flat_map(|i| &self.frame(i)[from..from + width]);
+        Self {
+            shape: vec![self.frames(), width],
+            values: values.copied().collect(),
+        }
+    }
+
     /// Checks that every frame has the numbers it must have and that they are finite and below a
     /// bound; `meaning` says what the bound stands for.
     ///

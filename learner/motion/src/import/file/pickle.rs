@@ -12,6 +12,7 @@ mod reader;
 use super::File;
 use super::array::Array;
 use crate::error::MotionError;
+use npyz::NpyFile;
 use reader::{Reader, Storages};
 use std::cell::Cell;
 
@@ -88,6 +89,23 @@ impl Pickle {
                 "save dictionaries, numbers and NumPy arrays only, with pickle.dump, joblib.dump or numpy.save",
             )
         })
+    }
+
+    /// Reads the object that numpy.save pickled into an `.npy`.
+    pub(in crate::import) fn of_npy(file: &File<'_>) -> Result<Self, MotionError> {
+        let npy = NpyFile::new(file.bytes).map_err(|_| {
+            file.unusable(
+                "is no readable .npy file",
+                "download or export it again: it may be cut off",
+            )
+        })?;
+        if !npy.uses_pickled_array() {
+            return Err(file.unusable(
+                "is a plain array of numbers, which does not say what they are",
+                "give a dictionary of arrays as Isaac Gym or amp-rsl-rl save it, or one of the other formats",
+            ));
+        }
+        Self::read(file, npy.into_inner())
     }
 
     /// The whole.

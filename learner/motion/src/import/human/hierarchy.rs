@@ -139,12 +139,12 @@ impl<'a> Tree<'a> {
         let bone: Vec<f64> = (0..parents.len())
             .map(|joint| parents[joint].map_or(0.0, |p| (places[joint] - places[p]).norm()))
             .collect();
-        let mut reach = vec![(0.0, None); parents.len()];
+        let mut reach: Vec<(f64, Option<usize>)> = vec![(0.0, None); parents.len()];
         for joint in (1..parents.len()).rev() {
             let Some(parent) = parents[joint] else {
                 continue;
             };
-            let way: f64 = bone[joint] + f64::from(reach[joint].0);
+            let way = bone[joint] + reach[joint].0;
             if way > reach[parent].0 {
                 reach[parent] = (way, Some(joint));
             }
