@@ -70,6 +70,10 @@ pub(super) fn origin(verb: &str, source: &Path) -> String {
 /// Two outputs of one name (whatever their case: some file systems see none), or one whose place is taken
 /// by a source, by a file of somebody else, or by a clip of another origin.
 pub(super) fn claim(out: &Path, outputs: &[Output], sources: &[&Path]) -> Result<()> {
+    // What is a file, or below one, can be no folder.
+    if out.ancestors().any(Path::is_file) {
+        return Err(usage(format!("--out {} is no folder", out.display())));
+    }
     let sources: HashSet<(u64, u64)> = sources.iter().filter_map(|path| identity(path)).collect();
     let mut known: BTreeMap<String, &Output> = BTreeMap::new();
     let mut conflicts = Vec::new();

@@ -117,7 +117,10 @@ fn what_somebody_else_wrote_is_never_written_over() {
     claimed(&out, &[&source]).unwrap();
     // The folder itself may be a file.
     let file = file(root.join("file"), "");
-    assert!(claimed(&file, &[&source]).is_err());
+    for out in [file.clone(), file.join("below")] {
+        let message = claimed(&out, &[&source]).unwrap_err();
+        assert!(message.ends_with("is no folder"), "{message}");
+    }
 }
 
 #[test]
