@@ -5,14 +5,14 @@
 //! a jump.
 
 use super::Row;
-use g1::{DEFAULT_POSE, JOINT_TABLE, JOINTS};
+use g1::{DEFAULT_POSE, JOINTS};
 use nalgebra::Vector3;
 use retarget::{Capture, Landmark, Landmarks, Side};
 use std::f64::consts::PI;
 
-/// Bones of a human turn no faster: the fastest kicks and throws are at 40 rad/s (2300°/s) in single
-/// bones, from one frame that is as fast to the next. Rad/s, and the least angle that is a jump.
-const FASTEST_TURN: f64 = 1500.0 * PI / 180.0;
+/// A turn that is a jump if the next are much smaller: kicks and throws turn a bone at up to 2300°/s (40 rad/s),
+/// but not from one frame of a recording to the next and then no more. Rad/s, and the least angle, rad.
+const FASTEST_TURN: f64 = 900.0 * PI / 180.0;
 const LEAST_TURN: f64 = 15.0 * PI / 180.0;
 /// Out of a T-pose or a robot's zero pose less is enough, since nothing human begins so; rad.
 const OUT_OF_POSE: f64 = 30.0 * PI / 180.0;
@@ -47,7 +47,7 @@ pub(super) fn of_human(capture: &Capture, decisions: &mut Vec<String>) -> usize 
         let turns = bones(a).into_iter().zip(bones(b)).map(|(a, b)| a.angle(&b));
         let angle = turns.fold(0.0, f64::max);
         let metres = (b.middle(Landmark::Hip) - a.middle(Landmark::Hip)).norm();
-        let possible = (FASTEST_TURN / capture.fps).max(LEAST_TURN);
+        let possible = possible_turn(capture.fps);
         Step {
             turn: angle
                 / if is_t_pose(a) {
@@ -71,25 +71,28 @@ pub(super) fn of_human(capture: &Capture, decisions: &mut Vec<String>) -> usize 
 pub(super) fn of_robot(rows: &[Row], fps: f64, decisions: &mut Vec<String>) -> usize {
     let step = |i: usize| {
         let (a, b) = (&rows[i], &rows[i + 1]);
-        let by = |j: usize| (b.joints[j] - a.joints[j]).abs();
-        let share = |j: usize| by(j) * fps / JOINT_TABLE[j].velocity_limit;
-        let most = |f: &dyn Fn(usize) -> f64| (0..JOINTS).map(f).fold(0.0, f64::max);
-        let (angle, turn) = (most(&by), most(&share));
+        let turns = a.joints.iter().zip(b.joints).map(|(a, b)| (b - a).abs());
+        let angle = turns.fold(0.0, f64::max);
         let metres = (b.position - a.position).norm();
+        let possible = possible_turn(fps);
         Step {
-            turn: if is_zero(a) {
-                turn.max(angle / OUT_OF_ZERO)
-            } else if angle > LEAST_TURN {
-                turn
-            } else {
-                turn.min(1.0) // joints of files at 500 Hz are noisy
-            },
+            turn: angle
+                / if is_zero(a) {
+                    OUT_OF_ZERO.min(possible)
+                } else {
+                    possible
+                },
             way: metres / (FASTEST_RUN / fps).max(LEAST_WAY),
             angle,
             metres,
         }
     };
     leading(rows.len(), fps, step, decisions)
+}
+
+/// A turn between frames that only a jump exceeds, rad.
+fn possible_turn(fps: f64) -> f64 {
+    (FASTEST_TURN / fps).max(LEAST_TURN)
 }
 
 /// Leading frames that are alike and from which nobody gets to the next frame.

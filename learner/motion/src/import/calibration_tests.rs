@@ -109,6 +109,12 @@ fn a_robots_zero_pose_is_dropped() {
         assert_eq!(of_robot(&rows, fps, &mut said), 1);
         assert!(said[0].contains("56°"), "{said:?}");
     }
+    // A T: shoulders rolled out by 1.2 rad (69°), which their motors do at 30 frames a second.
+    rows[0] = pose(stands, 0.0);
+    (rows[0].joints[14], rows[0].joints[19]) = (0.25 + 1.2, -0.25 - 1.2);
+    let mut said = Vec::new();
+    assert_eq!(of_robot(&rows, 30.0, &mut said), 1);
+    assert!(said[0].contains("69°"), "{said:?}");
     // Standing in the default pose, then walking off, is a motion.
     let mut rows = vec![pose(stands, 0.0); 30];
     for (i, row) in rows.iter_mut().enumerate().skip(10) {

@@ -14,6 +14,7 @@ mod rate;
 
 use super::file::File;
 use super::joints::DROPPED;
+use super::rate::agree;
 use super::{Options, Row};
 use crate::clip::FRAME_SECONDS;
 use crate::error::MotionError;
@@ -91,7 +92,15 @@ pub(super) fn parse(file: &File<'_>) -> Result<Table, MotionError> {
         && first.text == export::header()
         && stated.iter().map(|stated| stated.fps).eq(as_written);
     let timed = rate::of_times(&times, layout.time.unwrap_or(0))?;
-    stated.extend(timed.filter(|_| layout.in_seconds));
+    if layout.in_seconds {
+        stated.extend(timed);
+    } else if let Some(counted) = timed.filter(|counted| !agree(counted.fps, 1.0)) {
+        let step = 1.0 / counted.fps;
+        return Err(file.unusable(
+            &format!("counts its frames in steps of {step}: are there some left out?"),
+            "number its rows 0, 1, 2, … and say how many of them are a second",
+        ));
+    }
     Ok(Table {
         rows,
         named,

@@ -45,6 +45,12 @@ fn the_rate_is_in_a_comment_or_in_times() {
     };
     assert_eq!(fps(&counted([0, 1, 2, 3]).unwrap()), Ok(None));
     assert!(counted([0, 1, 2, 5]).unwrap_err().contains("line 5"));
+    // Every fourth row of a recording: whose rate would be stated?
+    let message = counted([8, 12, 16, 20]).unwrap_err();
+    assert!(
+        message.contains("steps of 4") && message.contains("number its rows"),
+        "{message}"
+    );
 }
 
 #[test]
