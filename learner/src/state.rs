@@ -115,9 +115,10 @@ impl State {
     /// it was shipped by an older program.
     fn begin_with(&mut self, checkpoint: &Checkpoint) -> Result<()> {
         if let Some(part) = checkpoint.part(LEARNING) {
-            return self.learning.load_policy(part).with_context(|| {
+            self.learning.load_policy(part).with_context(|| {
                 format!("run.from: reading its `{LEARNING}`; set policy.hidden as it was")
-            });
+            })?;
+            return self.retune(checkpoint);
         }
         let policy = checkpoint.part(POLICY).with_context(|| {
             format!("run.from: the checkpoint has neither `{LEARNING}` nor `{POLICY}`")
@@ -139,10 +140,7 @@ impl State {
         self.learning
             .load(part(LEARNING)?)
             .with_context(|| format!("reading `{LEARNING}`"))?;
-        if let Some(config) = checkpoint.config()? {
-            let before: PpoConfig = config.section("ppo")?;
-            self.learning.retune(&before);
-        }
+        self.retune(checkpoint)?;
         self.iteration = checkpoint.iteration;
         self.saved = Some(checkpoint.iteration);
         self.seconds_before = shell.seconds;
@@ -150,6 +148,15 @@ impl State {
         self.remembered = shell.remembered;
         self.generator = shell.generator;
         self.earned = shell.earned;
+        Ok(())
+    }
+
+    /// The optimizer's rate came with a checkpoint; where this configuration asks for another than that one's did, it gets it.
+    fn retune(&mut self, checkpoint: &Checkpoint) -> Result<()> {
+        if let Some(config) = checkpoint.config()? {
+            let before: PpoConfig = config.section("ppo")?;
+            self.learning.retune(&before);
+        }
         Ok(())
     }
 

@@ -118,6 +118,17 @@ fn what_a_resume_changes_counts_and_what_it_may_not_change_is_refused() {
             "{what}: {said}"
         );
     }
+    fs::remove_file(run.join("checkpoints/00000004/manifest.json")).expect("removed");
+    for name in [
+        "rate",
+        run.join("checkpoints/00000004").to_str().expect("text"),
+    ] {
+        let (success, said) = ampco(&runs, "evaluate", name, &["--episodes", "1"]);
+        assert!(
+            !success && said.contains("manifest.json") && said.contains("00000003"),
+            "{name}: {said}"
+        );
+    }
     let good = run.join("checkpoints/00000003");
     let (success, said) = ampco(
         &runs,

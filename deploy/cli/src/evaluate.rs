@@ -49,7 +49,7 @@ Style is the reward of a discriminator (Eq. 7). Every run trains its own, and a 
 learnt little finds itself graceful. To compare runs, let one judge them all with --judge. A judge is a
 checkpoint that is kept and never trained on, best of a long run that walks well:
 
-  cp -r runs/walk/checkpoints/00000400 judge && cp runs/walk/config.toml judge/
+  cp -r runs/walk/checkpoints/00000400 judge
   ampco evaluate other-run --judge judge";
 
 /// Walk with a trained policy: survival, velocity errors, energy, style, gait

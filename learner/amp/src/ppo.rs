@@ -159,11 +159,14 @@ impl Ppo {
         Ok(())
     }
 
-    /// Before the actor's first step: the lowest rate, and an optimizer that remembers nothing. Adam's memory of squares is
+    /// Before the actor's first step: the lowest rate unless that is fixed, and an optimizer that remembers nothing. Adam's memory of squares is
     /// longer than that of gradients, so with the steps that the critic took alone counted in, the actor's first ones
     /// would be several times the rate. A trained policy went 1.8 to 180 nats in one iteration.
     pub(crate) fn begin_gently(&mut self) {
-        self.rate = self.config.min_learning_rate;
+        // One that does not move would stay there for good.
+        if self.config.schedule != RateSchedule::Fixed {
+            self.rate = self.config.min_learning_rate;
+        }
         self.adam = Adam::new(self.weights.len(), AdamConfig::default(), vec![]);
     }
 

@@ -40,7 +40,11 @@ impl Kept {
     /// beside its parts), or a run, whose newest checkpoint it is then.
     pub(crate) fn open(place: &Place, name: &str) -> Result<Self> {
         let given = Path::new(name);
-        let path = if given.join("manifest.json").is_file() {
+        // One of a run is meant as such also where its manifest is gone.
+        let among_others = given
+            .parent()
+            .is_some_and(|folder| folder.ends_with("checkpoints"));
+        let path = if given.join("manifest.json").exists() || among_others && given.is_dir() {
             given.to_owned()
         } else {
             let folder = place.find(Some(name))?;

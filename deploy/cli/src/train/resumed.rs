@@ -4,6 +4,7 @@
 //! checkpoint cannot take is refused before a byte is written, so that a mistake leaves the run as it was.
 
 use anyhow::{Context, Result};
+use run::checkpoint::CONFIG;
 use run::resume::{self, Change};
 use run::{Checkpoint, Config, Folder, metrics};
 use serde::Deserialize;
@@ -25,7 +26,7 @@ pub(super) struct GoingOn {
 impl Train {
     pub(super) fn resumed(&self) -> Result<Ready> {
         let folder = self.place.find(self.run.as_deref())?;
-        let before = folder.config()?;
+        let before = present(&folder)?;
         let mut config = before.clone();
         let mut preset_file = None;
         if let Some(name) = &self.preset {
@@ -92,6 +93,22 @@ impl Ready {
         }
         Ok(())
     }
+}
+
+/// The configuration as it lies in the run's folder. One that was damaged is mended from its checkpoint.
+fn present(folder: &Folder) -> Result<Config> {
+    folder.config().map_err(|error| {
+        let checkpoint = folder.checkpoints().open_whole(None);
+        let own = checkpoint.map(|checkpoint| (checkpoint.iteration, checkpoint.part(CONFIG).is_some()));
+        let remedy = match own {
+            Ok((iteration, true)) => format!(
+                "; the configuration under which its checkpoint was trained is {}: copy that over it",
+                folder.checkpoints().path(iteration).join(CONFIG).display()
+            ),
+            _ => String::new(),
+        };
+        usage(format!("{:#}{remedy}", anyhow::Error::from(error)))
+    })
 }
 
 /// Lays a preset over a configuration. A method is one of several: laid over another, it would be two.

@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use run::checkpoint::CONFIG;
 use run::resume::{Rule, rule};
 use toml::Value;
 
@@ -332,4 +331,27 @@ fn motion_that_is_another_than_was_learned_from_is_told() {
     assert_eq!(go_on(&[]), [""; 0], "told once");
     fs::remove_file(walks.join("a.csv")).unwrap();
     assert!(go_on(&[])[0].ends_with("a.csv is gone"));
+}
+
+#[test]
+fn a_damaged_configuration_is_refused_with_the_one_to_mend_it_by() {
+    let (_runs, folder) = run(true);
+    fs::write(folder.config_path(), "[run\niterations = ").unwrap();
+    let refused = resumed(&folder, &[]).err().unwrap();
+    assert!(refused.contains("config.toml: not valid TOML"), "{refused}");
+    let own = folder.checkpoints().path(10).join(CONFIG);
+    assert!(
+        refused.contains(&format!("{}: copy that over it", own.display())),
+        "{refused}"
+    );
+    fs::copy(own, folder.config_path()).unwrap();
+    assert_eq!(changed(&resumed(&folder, &[]).unwrap()), [""; 0]);
+    // Where there is no other, the error is all there is to say.
+    let (_runs, folder) = run(false);
+    fs::remove_file(folder.config_path()).unwrap();
+    let refused = resumed(&folder, &[]).err().unwrap();
+    assert!(
+        refused.contains("config.toml") && !refused.contains("copy"),
+        "{refused}"
+    );
 }
