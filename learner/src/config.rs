@@ -7,7 +7,8 @@ use ampco::ScheduleConfig;
 use anyhow::{Context, Result};
 use motion::{Dataset, MotionConfig};
 use protocol::RolloutLayout;
-use run::{FleetConfig, Folder, Mode, RunConfig};
+use run::{Config, FleetConfig, Folder, Mode, RunConfig};
+use toml::Value;
 use tracing::warn;
 
 use crate::intake::Terms;
@@ -21,6 +22,8 @@ pub(crate) struct LearnerConfig {
     pub(crate) experts: Dataset,
     /// Control steps of the longest possible episode.
     pub(crate) episode_steps: f64,
+    /// Samples after which task and robots are what they will be, see [`settled`].
+    pub(crate) settled: f64,
     /// All of it as TOML, to be kept in checkpoints.
     pub(crate) text: String,
 }
@@ -54,6 +57,7 @@ impl LearnerConfig {
                 .and_then(|steps| steps.as_integer())
                 .context("config.toml lacks task.episode_steps; `ampco train` writes it")?
                 as f64,
+            settled: settled(&config),
             text: config.to_toml(),
         })
     }
@@ -79,5 +83,48 @@ impl LearnerConfig {
             environments: self.fleet.environments_per_actor(),
             steps: self.fleet.steps,
         }
+    }
+}
+
+/// Samples at which the last schedule of `[task]` and `[randomization]` arrives; 0 where there is none. The learner knows
+/// neither section, but the way a schedule is written: it ends with `to_samples`, or with the second of `samples`.
+fn settled(config: &Config) -> f64 {
+    let number = |value: &Value| {
+        value
+            .as_float()
+            .or(value.as_integer().map(|whole| whole as f64))
+    };
+    let end = |(path, value): (String, Value)| {
+        let (section, name) = (path.split('.').next()?, path.rsplit('.').next()?);
+        match (section, name) {
+            ("task" | "randomization", "to_samples") => number(&value),
+            ("task" | "randomization", "samples") => number(value.as_array()?.last()?),
+            _ => None,
+        }
+    };
+    config
+        .leaves()
+        .into_iter()
+        .filter_map(end)
+        .fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_task_has_settled_when_its_last_schedule_arrives() {
+        let of = |text: &str| settled(&Config::parse(text, "a test").unwrap());
+        assert_eq!(
+            of("[task]\nkernel = 2.0\n[exploration]\nfinal_samples = 9e9"),
+            0.0
+        );
+        let curriculum = "[task.curriculum]\nfrom_samples = 1e6\nto_samples = 3e6\nkernel = 6.0\n";
+        assert_eq!(of(curriculum), 3e6);
+        let table = "[randomization]\nto_samples = 5000000";
+        assert_eq!(of(&format!("{curriculum}{table}")), 5e6);
+        let ramp = "[task.kernel]\nfrom = 0.25\nto = 2.0\nsamples = [1e6, 4e6]";
+        assert_eq!(of(ramp), 4e6);
     }
 }

@@ -6,7 +6,8 @@
 use amp::IterationReport;
 use serde::{Deserialize, Serialize};
 
-/// What robots have earned since a checkpoint was last scored.
+/// What robots have earned since a checkpoint was last scored, from the task as it is once its schedules have arrived:
+/// rewards of a task that still grows harder cannot be compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Earned {
     /// Sum of task rewards (Eq. 14), which mean the same in every phase, over all rows.

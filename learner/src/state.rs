@@ -184,7 +184,10 @@ impl State {
             .learning
             .iterate(batch, &mut experts, guide.rule, guide.granularity);
         if let Ok(report) = &report {
-            self.earned.add(report, batch.robots());
+            // What an easier task paid before would pass for skill.
+            if self.samples() as f64 > config.settled {
+                self.earned.add(report, batch.robots());
+            }
             self.last_report = Some(StoredReport {
                 iteration: self.iteration,
                 samples: batch.rows() as u64,

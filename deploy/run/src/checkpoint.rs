@@ -49,7 +49,7 @@ pub struct Contents<'a> {
     pub parts: &'a [(&'a str, &'a [u8])],
     /// Files that other processes are about to attach: with them it is whole.
     pub awaited: &'a [String],
-    /// How good it is, the more the better; the best is kept for good.
+    /// How good it is, the more the better; the best is kept for good. None where that cannot be told.
     pub score: Option<f64>,
 }
 

@@ -1,7 +1,10 @@
 //! From the folder of a study to what its report is made of.
 
+use std::collections::BTreeMap;
+
 use ::study::{Benchmark, Evaluation, Measured, Record, Results, Run, State, matrix};
 use anyhow::{Context, Result};
+use run::motion::{Print, differences};
 use run::{FleetConfig, Folder, metrics};
 
 use super::folder::StudyFolder;
@@ -103,6 +106,9 @@ fn facts(folder: &StudyFolder, runs: &[Run], otherwise: usize) -> Result<Vec<(St
             format!("{}, {} cores", text("processor"), origin["cores"]),
         );
     }
+    for words in other_motion(folder, runs)? {
+        tell("reference motion not the same", words);
+    }
     let begun = runs.iter().find(|run| !run.records.is_empty());
     let Some(run) = begun else {
         return Ok(facts);
@@ -147,6 +153,31 @@ fn facts(folder: &StudyFolder, runs: &[Run], otherwise: usize) -> Result<Vec<(St
         );
     }
     Ok(facts)
+}
+
+/// Which runs have learned from other motion files than the first run of their method: the mean over such is of neither.
+fn other_motion(folder: &StudyFolder, runs: &[Run]) -> Result<Vec<String>> {
+    let mut first: BTreeMap<&str, (&str, Vec<Print>)> = BTreeMap::new();
+    let mut said = Vec::new();
+    for run in runs {
+        let Some(made) = folder.run(&run.name)? else {
+            continue;
+        };
+        let newest = made.motion()?.pop();
+        let files = newest.map_or_else(Vec::new, |learned| learned.files);
+        match first.get(run.entry.as_str()) {
+            None => {
+                first.insert(&run.entry, (&run.name, files));
+            }
+            Some((name, expected)) => {
+                let differences = differences(expected, &files);
+                if let Some(one) = differences.first() {
+                    said.push(format!("{} and {name}: {one}", run.name));
+                }
+            }
+        }
+    }
+    Ok(said)
 }
 
 #[cfg(test)]
@@ -258,5 +289,34 @@ mod tests {
         folder.write("study.toml", &without).unwrap();
         let none = results(&folder, "../").unwrap();
         assert_eq!((judged(&none), left_out(&none)), (vec![0, 0, 0], None));
+    }
+
+    #[test]
+    fn runs_of_a_method_that_learned_from_other_files_are_named() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = StudyFolder::create(place.path()).unwrap();
+        let text = "title = 't'\nmethods = ['ampco', 'amp-0.5']\nseeds = [1, 2]\niterations = 1";
+        folder.write("study.toml", text).unwrap();
+        let print = |sha256: &str| Print {
+            file: "/walks/a.csv".into(),
+            sha256: sha256.into(),
+        };
+        for (name, files) in [
+            ("ampco-seed1", vec![print("1")]),
+            ("ampco-seed2", vec![print("2")]),
+            // Another method may have other motion, or none from files.
+            ("amp-0.5-seed1", vec![]),
+            ("amp-0.5-seed2", vec![]),
+        ] {
+            let run = Folder::create(&folder.runs(), name).unwrap();
+            std::fs::write(run.config_path(), "[run]\niterations = 1").unwrap();
+            run.note_motion(0, files).unwrap();
+        }
+        let facts = results(&folder, "../").unwrap().facts;
+        let told: Vec<&str> = facts.iter().map(|fact| fact.1.as_str()).collect();
+        assert_eq!(
+            told,
+            ["ampco-seed2 and ampco-seed1: /walks/a.csv has changed"]
+        );
     }
 }
