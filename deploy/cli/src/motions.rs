@@ -26,7 +26,8 @@ Examples:
   ampco train --set 'motion.clips=[{folder=\"walks\"}]'   train on it
 
 Formats are told by content: AMASS and SMPL-X .npz, BVH, ASF/AMC, tables of the G1 (.csv),
-BeyondMimic .npz, Isaac Lab .npz, Isaac Gym .npy, GMR .pkl.";
+BeyondMimic .npz, Isaac Lab .npz, Isaac Gym .npy, GMR .pkl, ASAP, PBHC and PHC .pkl, MimicKit .pkl,
+ProtoMotions .motion and .pt, amp-rsl-rl .npy and .npz, DeepMimic and TienKung-Lab .json and .txt.";
 
 /// Import, measure, make and mirror reference motion
 #[derive(Debug, Args)]

@@ -4,6 +4,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -19,7 +20,9 @@ use crate::console::Console;
 use crate::failure::usage;
 
 /// What motion files end in: a folder is searched for these.
-const EXTENSIONS: [&str; 6] = ["npz", "bvh", "amc", "csv", "pkl", "npy"];
+const EXTENSIONS: [&str; 8] = ["npz", "bvh", "amc", "csv", "pkl", "npy", "motion", "pt"];
+/// What clips of frames end in, and much else: these are looked into.
+const TEXTS: [&str; 2] = ["json", "txt"];
 
 /// Files and what they do not say themselves.
 #[derive(Debug, Args)]
@@ -152,8 +155,10 @@ impl Sources {
         for path in &self.paths {
             if path.is_dir() {
                 let before = sources.len();
-                search(path, path, &mut sources)
+                let mut passed = Vec::new();
+                search(path, path, &mut sources, &mut passed)
                     .with_context(|| format!("searching {}", path.display()))?;
+                say_passed(&passed);
                 if sources.len() == before {
                     let endings = EXTENSIONS.join(", ");
                     return Err(usage(format!(
@@ -188,17 +193,52 @@ fn distinct(sources: &[Source]) -> Result<()> {
     Ok(())
 }
 
+/// Says what was passed over, in a line.
+fn say_passed(passed: &[PathBuf]) {
+    const SHOWN: usize = 3;
+    if passed.is_empty() {
+        return;
+    }
+    let shown: Vec<String> = passed
+        .iter()
+        .take(SHOWN)
+        .map(|path| path.display().to_string())
+        .collect();
+    let more = if passed.len() > SHOWN { ", …" } else { "" };
+    let count = match passed.len() {
+        1 => "1 file".to_owned(),
+        many => format!("{many} files"),
+    };
+    // Nobody has to read it: a closed standard error stops no import.
+    let _ = writeln!(
+        io::stderr(),
+        "passed over {count} with the shape of a body and no motion: {}{more}",
+        shown.join(", ")
+    );
+}
+
 /// Motion files below a folder, sorted; their names carry the folders between.
-fn search(root: &Path, folder: &Path, sources: &mut Vec<Source>) -> Result<()> {
+/// Those that hold a body's shape and no motion come into `passed`.
+fn search(
+    root: &Path,
+    folder: &Path,
+    sources: &mut Vec<Source>,
+    passed: &mut Vec<PathBuf>,
+) -> Result<()> {
     let mut paths: Vec<PathBuf> = fs::read_dir(folder)?
         .map(|entry| entry.map(|entry| entry.path()))
         .collect::<Result<_, _>>()?;
     paths.sort();
     for path in paths {
         let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        let ending = ending.as_deref().unwrap_or_default();
         if path.is_dir() {
-            search(root, &path, sources)?;
-        } else if ending.is_some_and(|e| EXTENSIONS.contains(&e.as_str())) {
+            search(root, &path, sources, passed)?;
+        } else if ending == "npz" && import::is_body_shape(&path) {
+            passed.push(path);
+        } else if EXTENSIONS.contains(&ending)
+            || TEXTS.contains(&ending) && import::is_text_of_frames(&path)
+        {
             let inner = path.strip_prefix(root).unwrap_or(&path);
             let name = name(inner);
             let folders = inner

@@ -46,6 +46,60 @@ fn folders_are_searched_and_their_names_kept() {
     assert!(sources(vec![empty.path().into()]).found().is_err());
 }
 
+/// A zip archive of empty files.
+fn archive(names: &[&str]) -> Vec<u8> {
+    let (mut files, mut directory) = (Vec::<u8>::new(), Vec::<u8>::new());
+    for name in names {
+        // Version 2.0, no flags, stored, 1 January 1980, and no bytes, whose checksum is 0.
+        let mut about = vec![20, 0, 0, 0, 0, 0, 0, 0, 0x21, 0];
+        about.extend([0; 12]);
+        about.extend((name.len() as u16).to_le_bytes());
+        about.extend([0, 0]);
+        let offset = (files.len() as u32).to_le_bytes();
+        files.extend(b"PK\x03\x04".iter().chain(&about).chain(name.as_bytes()));
+        directory.extend(b"PK\x01\x02\x14\0".iter().chain(&about).chain(&[0; 10]));
+        directory.extend(offset.iter().chain(name.as_bytes()));
+    }
+    let (count, at) = (names.len() as u16, files.len() as u32);
+    let size = (directory.len() as u32).to_le_bytes();
+    files.extend(directory);
+    files.extend(b"PK\x05\x06\0\0\0\0");
+    files.extend(count.to_le_bytes().repeat(2));
+    files.extend(size.iter().chain(&at.to_le_bytes()).chain(&[0, 0]));
+    files
+}
+
+#[test]
+fn shapes_and_texts_that_are_no_motion_are_passed_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("shape.npz"), archive(&["betas.npy", "gender.npy"])).unwrap();
+    fs::write(
+        path("poses.npz"),
+        archive(&["betas.npy", "poses.npy", "trans.npy"]),
+    )
+    .unwrap();
+    fs::write(path("walk.motion"), "").unwrap();
+    fs::write(path("run.txt"), "{\"FrameDuration\": 0.02, \"Frames\": []}").unwrap();
+    fs::write(path("license.txt"), "Frames of this data may be used").unwrap();
+    fs::write(path("poses.json"), "{\"name\": \"poses\", \"frames\": 3}").unwrap();
+    let found = sources(vec![folder.path().into()]).found().unwrap();
+    let names: Vec<&str> = found.iter().map(|s| s.name.as_str()).collect();
+    assert_eq!(names, ["poses", "run", "walk"]);
+    // Named, it is not passed over, and fails with the reason.
+    let reads = sources(vec![path("shape.npz")]).read().unwrap();
+    let message = reads[0].outcome.as_ref().err().unwrap().to_string();
+    assert!(
+        message.contains("shape of a body and no motion"),
+        "{message}"
+    );
+    // A folder of nothing else holds no motion.
+    fs::remove_file(path("poses.npz")).unwrap();
+    fs::remove_file(path("walk.motion")).unwrap();
+    fs::remove_file(path("run.txt")).unwrap();
+    assert!(sources(vec![folder.path().into()]).found().is_err());
+}
+
 #[test]
 fn files_are_read_at_once_and_kept_in_order() {
     let folder = tempfile::tempdir().unwrap();
