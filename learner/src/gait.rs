@@ -4,8 +4,8 @@
 //! stands are no less in phase than out of it, and the mean of all said "shuffle" of robots that all did as told.
 
 use amp::{Batch, Segment};
-use g1::gait::{Feet, Gait, Pace, Signs, Verdict, speed_use};
-use g1::observation::{COMMAND, GRAVITY, state_of};
+use g1::gait::{Conduct, Feet, Verdict, speed_use};
+use g1::observation::{ANGULAR_VELOCITY, COMMAND, GRAVITY, state_of};
 use g1::{FEATURES, OBSERVATION};
 use tracing::{info, warn};
 
@@ -24,9 +24,8 @@ const JUDGED_TOGETHER: u64 = 10;
 /// All measures of some robots' steps together.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Measures {
-    pub(crate) gait: Gait,
+    pub(crate) conduct: Conduct,
     pub(crate) feet: Feet,
-    pub(crate) pace: Pace,
     steps: f64,
     speed_use: f64,
     seconds_upright: f64,
@@ -78,9 +77,11 @@ impl Measures {
                 let began = step == 0 || batch.ends[row - robots] != 0.0;
                 let before = (!began).then(|| forces(batch, row - robots));
                 let features = &batch.next_features[row * FEATURES..][..FEATURES];
-                self.gait.add(features, forces(batch, row), before);
                 // Upright robots: base and heading frame differ by the small tilt.
-                self.pace.add(command, [features[1], features[2]]);
+                let velocity = [features[1], features[2], features[ANGULAR_VELOCITY.end - 1]];
+                let landed = forces(batch, row);
+                self.conduct
+                    .add(command, velocity, features, landed, before);
                 self.steps += 1.0;
                 self.speed_use += f64::from(speed_use(features));
                 let goes_on = step + 1 < segment.steps && batch.ends[row] == 0.0;
@@ -93,9 +94,8 @@ impl Measures {
     }
 
     fn merge(&mut self, other: &Self) {
-        self.gait.merge(&other.gait);
+        self.conduct.merge(&other.conduct);
         self.feet.merge(&other.feet);
-        self.pace.merge(&other.pace);
         self.steps += other.steps;
         self.speed_use += other.speed_use;
         self.seconds_upright += other.seconds_upright;
@@ -108,7 +108,7 @@ impl Measures {
     }
 
     pub(crate) fn stride_rate(&self) -> Option<f64> {
-        self.gait.stride_rate(CONTROL_HZ)
+        self.conduct.gait().stride_rate(CONTROL_HZ)
     }
 
     pub(crate) fn slip_per_stride(&self) -> Option<f64> {
@@ -118,7 +118,7 @@ impl Measures {
     /// What the gait is.
     pub(crate) fn verdict(&self) -> Verdict {
         let upright = (self.lives > 0.0).then(|| self.seconds_upright / self.lives);
-        Verdict::of(&Signs::of(&self.gait, &self.pace, upright, CONTROL_HZ))
+        self.conduct.verdict(upright, CONTROL_HZ)
     }
 }
 

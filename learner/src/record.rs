@@ -105,14 +105,16 @@ pub(crate) struct GaitFigures {
     joint_speed_use: f64,
     commanded_speed: Option<f64>,
     speed: Option<f64>,
+    commanded_yaw_rate: Option<f64>,
+    yaw_rate: Option<f64>,
 }
 
 impl From<&Measures> for GaitFigures {
     fn from(measures: &Measures) -> Self {
-        let Measures {
-            gait, feet, pace, ..
-        } = measures;
+        let (gait, feet) = (measures.conduct.gait(), &measures.feet);
+        let pace = measures.conduct.pace();
         let (commanded_speed, speed) = pace.speeds().unzip();
+        let (commanded_yaw_rate, yaw_rate) = pace.turns().unzip();
         Self {
             gait: measures.verdict().to_string(),
             hip_correlation: gait.hip_correlation(),
@@ -128,6 +130,8 @@ impl From<&Measures> for GaitFigures {
             joint_speed_use: measures.speed_use(),
             commanded_speed,
             speed,
+            commanded_yaw_rate,
+            yaw_rate,
         }
     }
 }

@@ -8,18 +8,21 @@
 //! | hips, contacts, strides: from features and foot forces | here |
 //! | clearance, slip, step lengths: from states | `feet` |
 //! | use of the motors' limits | `motors` |
-//! | how fast, and how fast it was asked to be | `pace` |
+//! | how fast it goes and turns, and how fast it was asked to | `pace` |
+//! | gait and pace by what is asked for: to go, to turn, to stay | `conduct` |
 //! | all of it in a word | `verdict` |
 
+mod conduct;
 mod feet;
 mod motors;
 mod pace;
 mod verdict;
 
+pub use conduct::Conduct;
 pub use feet::Feet;
 pub use motors::{MotorUse, speed_use};
-pub use pace::Pace;
-pub use verdict::{Signs, Verdict};
+pub use pace::{Aim, Pace};
+pub use verdict::{Part, Signs, Verdict};
 
 use crate::FEATURES;
 use crate::observation::FEATURE_JOINT_POSITION;

@@ -42,8 +42,11 @@ Walk with a trained policy: survival, velocity errors, energy, style, gait
 
 The policy acts without exploration noise. Each command is tried by a number of robots, from standing,
 without randomisation. `--suite standard` tries everything that a policy should be able to do: speeds
-from 0 to 2 m/s, backwards, sideways, turning, changes of the command, pushes, from standing and from
-reference frames, with and without Table I.
+from 0 to 2 m/s, backwards, sideways, turning on the spot, at a walk and at a run, changes of the command,
+pushes, from standing and from reference frames, with and without Table I.
+
+A gait is good if it is what the whole command asks for, forward, aside and in turning, once two seconds have
+passed since the start or a new command.
 
 Style is the reward of a discriminator (Eq. 7). Every run trains its own, and a run whose discriminator
 learnt little finds itself graceful. To compare runs, let one judge them all with --judge. A judge is a

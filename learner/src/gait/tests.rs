@@ -34,7 +34,7 @@ fn robots_follow_themselves_and_not_their_neighbours() {
     let measures = Measures::of(&walk, Some(1000.0));
     // Each robot lands once in each of steps 2 and 3: 4 landings / 2 feet / 6 rows · 50 Hz.
     assert!((measures.stride_rate().unwrap() - 50.0 / 3.0).abs() < 1e-9);
-    assert_eq!(measures.gait.contact_correlation(), Some(-1.0));
+    assert_eq!(measures.conduct.gait().contact_correlation(), Some(-1.0));
     assert_eq!(measures.verdict(), Verdict::Walk);
     // Robot 0 alone, steps 1 and 2, after which the next gravity is known; one landing, on
     // sliding feet: 2 · 0.5 m/s · 20 ms.
@@ -50,14 +50,33 @@ fn who_is_told_to_go_aside_is_not_asked_unless_all_are() {
         mixed.observations[other * OBSERVATION + COMMAND.start] = 0.1;
     }
     // The robot that walks has its hips at ±.3 and ∓.3, the other both at .3.
-    let correlation = Measures::of(&mixed, None).gait.hip_correlation();
+    let correlation = Measures::of(&mixed, None).conduct.gait().hip_correlation();
     assert!((correlation.unwrap() + 1.0).abs() < 1e-9);
     for row in 0..4 {
         mixed.observations[row * OBSERVATION + COMMAND.start] = 0.1;
     }
     // Of both: left .3 −.3 .3 .3, right −.3 .3 .3 .3, covariance −.0225, variance .0675.
-    let correlation = Measures::of(&mixed, None).gait.hip_correlation();
+    let correlation = Measures::of(&mixed, None).conduct.gait().hip_correlation();
     assert!((correlation.unwrap() + 1.0 / 3.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_walk_that_does_not_turn_as_it_is_told_is_no_walk() {
+    let mut walk = batch(&[[(LEFT, 0.3), (RIGHT, -0.3)], [(RIGHT, -0.3), (LEFT, 0.3)]]);
+    for row in 0..4 {
+        // The third number of a command, and the yaw rate among the features: robots turn as told, at 0.5 of 0.6 rad/s.
+        walk.observations[row * OBSERVATION + COMMAND.start + 2] = -0.6;
+        walk.next_features[row * FEATURES + 6] = -0.5;
+    }
+    let measures = Measures::of(&walk, Some(1000.0));
+    assert_eq!(measures.verdict(), Verdict::Walk);
+    let (asked, turned) = measures.conduct.pace().turns().unwrap();
+    assert!((asked - 0.6).abs() < 1e-6 && (turned - 0.5).abs() < 1e-6);
+    for row in 0..4 {
+        walk.next_features[row * FEATURES + 6] = 0.0;
+    }
+    let verdict = Measures::of(&walk, Some(1000.0)).verdict();
+    assert_eq!(verdict.to_string(), "veer: 0.00 of 0.60 rad/s");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Episodes of one scenario: robots go until they fall or the time is over, and are measured.
 
 use anyhow::{Context, Result};
-use g1::gait::CONTACT_FORCE;
+use g1::gait::{CONTACT_FORCE, Conduct};
 use g1::joints::{LEFT_LEG, RIGHT_LEG};
 use g1::{ACTION, FEATURES, JOINTS};
 use policy::Policy;
@@ -88,6 +88,7 @@ impl<'a> Walker<'a> {
             let command = scenario.command(step, conditions.steps);
             if command != held.0 {
                 held = (command, step);
+                robots.iter_mut().for_each(Robot::close);
             }
             for robot in 0..n {
                 if fleet.command(robot) != command {
@@ -111,11 +112,8 @@ impl<'a> Walker<'a> {
                 let (before, after) = block.transition(robot);
                 self.judge.take(robot, step == 0, [before, after], &command);
                 let last = &fleet.last_step(robot);
-                tally.add(&block, robot, command, last, life.forces);
-                if step >= held.1 + SETTLING {
-                    tally.settled_steps += 1.0;
-                    tally.settled_error += f64::from(block.rows.tracking_errors[robot]);
-                }
+                let settled = step >= held.1 + SETTLING;
+                tally.add(&block, robot, command, last, life, settled);
                 if conditions.traced {
                     tally.traces[robot].samples.push(sample(last));
                 }
@@ -127,7 +125,10 @@ impl<'a> Walker<'a> {
                 break;
             }
         }
-        for robot in &robots {
+        for robot in &mut robots {
+            robot.close();
+            tally.conduct.merge(&robot.conduct);
+            tally.settled_conduct.merge(&robot.settled_conduct);
             // Whose episode nothing ended has had all its time.
             tally.ends.add(robot.ended.unwrap_or(Cause::TimeOut));
         }
@@ -171,6 +172,16 @@ impl<'a> Walker<'a> {
 struct Robot {
     ended: Option<Cause>,
     forces: Option<[f32; 2]>,
+    conduct: Conduct,
+    settled_conduct: Conduct,
+}
+
+impl Robot {
+    /// Another command, or the end.
+    fn close(&mut self) {
+        self.conduct.close();
+        self.settled_conduct.close();
+    }
 }
 
 impl Tally {
@@ -180,23 +191,34 @@ impl Tally {
         robot: usize,
         command: [f32; 3],
         last: &LastStep,
-        forces_before: Option<[f32; 2]>,
+        life: &mut Robot,
+        settled: bool,
     ) {
         let LastStep { state, exertion } = last;
-        let velocity = state.velocity_in_heading();
-        let yaw_rate = state.angular_velocity.z;
+        let planar = state.velocity_in_heading();
+        let velocity = [planar.x, planar.y, state.angular_velocity.z];
         let (_, features) = block.transition(robot);
+        let (forces, forces_before) = (exertion.foot_forces, life.forces);
+        let error = f64::from(block.rows.tracking_errors[robot]);
+        let errors: [f64; 3] =
+            std::array::from_fn(|axis| f64::from(command[axis] - velocity[axis]).powi(2));
         self.steps += 1.0;
-        self.squared_error += f64::from(block.rows.tracking_errors[robot]);
-        for (axis, got) in [velocity.x, velocity.y, yaw_rate].into_iter().enumerate() {
-            self.squared_errors[axis] += f64::from(command[axis] - got).powi(2);
+        self.squared_error += error;
+        for (sum, error) in self.squared_errors.iter_mut().zip(errors) {
+            *sum += error;
+        }
+        life.conduct
+            .add(command, velocity, features, forces, forces_before);
+        if settled {
+            self.settled_steps += 1.0;
+            self.settled_error += error;
+            self.settled_yaw_error += errors[2];
+            life.settled_conduct
+                .add(command, velocity, features, forces, forces_before);
         }
         self.energy += f64::from(exertion.energy);
         self.task += f64::from(block.rows.task_rewards[robot]);
-        self.yaw_rate += f64::from(yaw_rate);
-        self.pace.add(command, [velocity.x, velocity.y]);
-        self.gait.add(features, exertion.foot_forces, forces_before);
-        self.feet.add(state, exertion.foot_forces, forces_before);
+        self.feet.add(state, forces, forces_before);
         self.motors.add(&exertion.torque_use, &exertion.speed_use);
     }
 }

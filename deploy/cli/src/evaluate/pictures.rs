@@ -57,9 +57,14 @@ fn figure(scenario: &Scenario, tally: &Tally, conditions: &Conditions) -> Figure
         panels.push(Panel::Contacts(contacts(window, start)));
     }
     panels.push(Panel::Bars(torques(tally)));
+    let turns = scenario.commands.iter().any(|command| command[2] != 0.0);
+    let yaw = match turns {
+        true => format!(" and {:.2} rad/s", outcome.rmse_yaw_rate),
+        false => String::new(),
+    };
     Figure {
         title: format!(
-            "{} ({}): {:.0} % survive, RMSE {:.2} m/s, {}",
+            "{} ({}): {:.0} % survive, RMSE {:.2} m/s{yaw}, {}",
             scenario.name,
             scenario.condition(),
             100.0 * outcome.survival,

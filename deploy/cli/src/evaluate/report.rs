@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use serde::Serialize;
 use serde_json::Value;
+use sim::Physics;
 
 use super::episodes::Conditions;
 use super::reference::Nearest;
@@ -23,6 +24,8 @@ pub(super) struct Report {
     iteration: u64,
     /// The checkpoint whose discriminator scored the style; the policy's own if there is none.
     judge: Option<PathBuf>,
+    /// The engine that moved the robots.
+    physics: Physics,
     seconds: f64,
     episodes: usize,
     seed: u64,
@@ -78,6 +81,7 @@ impl Report {
             checkpoint: subject.kept.path.clone(),
             iteration: subject.kept.iteration,
             judge: judge.map(|judge| judge.path.clone()),
+            physics: subject.task.physics,
             seconds: f64::from(conditions.steps) / CONTROL_HZ,
             episodes: conditions.episodes,
             seed: conditions.seed,
@@ -115,12 +119,16 @@ impl Report {
             None => "judged by its own discriminator".to_owned(),
         };
         format!(
-            "{}, iteration {}: {} episodes of {} s each, seed {}; style {judge}",
+            "{}, iteration {}: {} episodes of {} s each, seed {}, {}; style {judge}",
             self.checkpoint.display(),
             self.iteration,
             self.episodes,
             self.seconds,
-            self.seed
+            self.seed,
+            match self.physics {
+                Physics::Rapier => "in rapier",
+                Physics::Batched => "in the batched engine",
+            }
         )
     }
 
@@ -189,6 +197,7 @@ mod tests {
             checkpoint: "runs/walk/checkpoints/00000100".into(),
             iteration: 100,
             judge: None,
+            physics: Physics::Batched,
             seconds: 20.0,
             episodes: 4,
             seed: 1,
@@ -221,6 +230,8 @@ mod tests {
             serde_json::json!({ "fall": 1, "time_out": 3, "stray": 0, "fault": 0 })
         );
         assert!(markdown.contains("| 1 fall |"), "{markdown}");
+        assert_eq!(json["physics"], "batched");
+        assert!(markdown.contains("seed 1, in the batched engine; style"));
         assert_eq!(json["scenarios"][2]["condition"], "pushed");
     }
 

@@ -83,10 +83,11 @@ impl Scenario {
 /// - Speeds from standing still to a run, and backwards, which no reference motion shows.
 /// - Sideways without forward velocity, for a gait of its own is needed; ±, for a policy may have
 ///   learnt one side only.
-/// - Turning while walking at 0.5 m/s, an arc of 1 m: what a steered walk needs.
+/// - Turning while walking at 0.5 m/s, an arc of 1 m: what a steered walk needs; on the spot; and at a run, in curves of
+///   5 m. To both sides.
 /// - Each of these from standing and from frames of the nearest reference motion, because a policy
 ///   that was always started in motion may not know how to begin; and each without and with Table I.
-/// - Changes inside an episode: through all speeds and to a stop, and through all directions.
+/// - Changes inside an episode: through all speeds and to a stop, through all directions, and through turns of all kinds.
 /// - Pushes of 0.5 m/s, the greatest of Table I, from all sides.
 pub(super) fn standard() -> Vec<Scenario> {
     let held = [
@@ -100,19 +101,36 @@ pub(super) fn standard() -> Vec<Scenario> {
         ("right-0.3", [0.0, -0.3, 0.0]),
         ("turn-left-0.5", [0.5, 0.0, 0.5]),
         ("turn-right-0.5", [0.5, 0.0, -0.5]),
+        ("spot-left-0.8", [0.0, 0.0, 0.8]),
+        ("spot-right-0.8", [0.0, 0.0, -0.8]),
+        ("curve-left-2.0", [2.0, 0.0, 0.4]),
+        ("curve-right-2.0", [2.0, 0.0, -0.4]),
     ];
     let forward = |speed: f32| [speed, 0.0, 0.0];
     let changing = [
-        ("speeds", [0.0, 0.5, 1.0, 1.5, 2.0, 1.0, 0.0].map(forward)),
+        (
+            "speeds",
+            [0.0, 0.5, 1.0, 1.5, 2.0, 1.0, 0.0].map(forward).to_vec(),
+        ),
         (
             "directions",
-            [
+            vec![
                 [0.5, 0.0, 0.0],
                 [0.5, 0.0, 0.5],
                 [0.5, 0.0, -0.5],
                 [0.0, 0.3, 0.0],
                 [0.0, -0.3, 0.0],
                 [-0.5, 0.0, 0.0],
+                [0.0, 0.0, 0.0],
+            ],
+        ),
+        (
+            "turns",
+            vec![
+                [0.0, 0.0, 0.8],
+                [0.0, 0.0, -0.8],
+                [2.0, 0.0, 0.4],
+                [2.0, 0.0, -0.4],
                 [0.0, 0.0, 0.0],
             ],
         ),
@@ -134,7 +152,8 @@ pub(super) fn standard() -> Vec<Scenario> {
             };
             suite.extend(held.map(|(name, command)| under(name, vec![command])));
             if !from_reference {
-                suite.extend(changing.map(|(name, commands)| under(name, commands.to_vec())));
+                let changing = changing.iter().cloned();
+                suite.extend(changing.map(|(name, commands)| under(name, commands)));
             }
         }
     }
@@ -213,10 +232,45 @@ mod tests {
         let suite = standard();
         let names: BTreeSet<_> = suite.iter().map(|scenario| &scenario.name).collect();
         assert_eq!(names.len(), suite.len());
-        // Ten commands under four conditions, two changing ones under two, three pushed.
-        assert_eq!(suite.len(), 10 * 4 + 2 * 2 + 3);
+        // Fourteen commands under four conditions, three changing ones under two, three pushed.
+        assert_eq!(suite.len(), 14 * 4 + 3 * 2 + 3);
         let plain = |name: &str| *name == *"forward-1.0";
         assert_eq!(names.iter().filter(|name| plain(name)).count(), 1);
         assert!(names.iter().all(|name| !name.contains(['/', ' '])));
+    }
+
+    #[test]
+    fn the_standard_suite_asks_for_every_turn_to_both_sides() {
+        let suite = standard();
+        for from_reference in [false, true] {
+            for rows in [0, ROWS.len()] {
+                let asked: Vec<[f32; COMMAND]> = suite
+                    .iter()
+                    .filter(|scenario| scenario.commands.len() == 1 && scenario.push.is_none())
+                    .filter(|s| s.from_reference == from_reference && s.rows.len() == rows)
+                    .map(|scenario| scenario.commands[0])
+                    .collect();
+                let turning = |speed: std::ops::RangeInclusive<f32>, left: bool| {
+                    asked.iter().any(|&[forward, aside, yaw_rate]| {
+                        let turns = yaw_rate != 0.0 && (yaw_rate > 0.0) == left;
+                        speed.contains(&forward) && aside == 0.0 && turns
+                    })
+                };
+                // On the spot, at a walk, and from 1.8 m/s on, where the reference runs.
+                for speed in [0.0..=0.0, 0.3..=1.0, 1.8..=2.5] {
+                    assert!(turning(speed.clone(), true), "left at {speed:?}");
+                    assert!(turning(speed.clone(), false), "right at {speed:?}");
+                }
+                // What is asked for on one side is asked for on the other.
+                for [forward, aside, yaw_rate] in &asked {
+                    let mirrored = [*forward, -aside, -yaw_rate];
+                    assert!(asked.contains(&mirrored), "{mirrored:?}");
+                }
+            }
+        }
+        let inside = |name: &str| suite.iter().find(|s| s.name == name).unwrap();
+        assert_eq!(inside("turns").command(0, 1000), [0.0, 0.0, 0.8]);
+        // A fifth of an episode each: the third from step 400 on.
+        assert_eq!(inside("turns").command(400, 1000), [2.0, 0.0, 0.4]);
     }
 }

@@ -15,7 +15,7 @@ const fn column(name: &'static str, unit: &'static str, value: fn(&Row) -> Strin
 }
 
 /// From left to right.
-pub(super) const COLUMNS: [Column; 20] = [
+pub(super) const COLUMNS: [Column; 21] = [
     column("scenario", "", |row| row.name.clone()),
     column("survival", "%", |row| {
         digits(100.0 * row.outcome.survival, 1)
@@ -24,6 +24,9 @@ pub(super) const COLUMNS: [Column; 20] = [
     column("settled", "m/s", |row| or_dash(row.outcome.rmse_settled, 3)),
     column("lateral", "m/s", |row| digits(row.outcome.rmse_lateral, 3)),
     column("yaw", "rad/s", |row| digits(row.outcome.rmse_yaw_rate, 3)),
+    column("yaw settled", "rad/s", |row| {
+        or_dash(row.outcome.rmse_yaw_rate_settled, 3)
+    }),
     column("energy", "J/1000", |row| digits(row.outcome.energy_j, 0)),
     column("style", "", |row| digits(row.outcome.style_reward, 3)),
     column("hips", "", |row| or_dash(row.outcome.hip_correlation, 2)),
@@ -52,7 +55,7 @@ pub(super) const COLUMNS: [Column; 20] = [
 pub(super) const LEGEND: &str = "\
 - survival: episodes that had all their time. Everything else is measured until their end.
 - rmse: root mean squared planar velocity error (III-F); settled: without the first two seconds after a start
-  or a new command; lateral: its sideways part; yaw: of the yaw rate.
+  or a new command; lateral: its sideways part; yaw: of the yaw rate, and that of settled robots.
 - energy: positive mechanical work of a robot per 1,000 control steps (20 s), without exploration noise.
 - style: the discriminator's reward (Eq. 7), 0 to 1.
 - hips: correlation of left and right hip pitch, −1 a walk, +1 a hop.
@@ -61,7 +64,9 @@ pub(super) const LEGEND: &str = "\
 - clear: mean height of a foot's sole in swing; slip: way of a foot on the ground per stride.
 - symmetry: 1 both feet step alike, 0 one foot always leads.
 - torque, speed: greatest share of any joint's effort limit and velocity limit.
-- ended: how many episodes ended before their time, and why: a fall, straying from the command, a fault of the physics.";
+- ended: how many episodes ended before their time, and why: a fall, straying from the command, a fault of the physics.
+- gait: stand, walk, run or turn where settled robots do what they are told, forward, aside and in turning; else
+  what they do instead.";
 
 /// Episodes that ended before their time, by cause.
 fn ended(row: &Row) -> String {

@@ -1,7 +1,7 @@
 //! What is measured over episodes: sums that add up in any grouping, and the numbers that follow.
 
 use g1::JOINT_TABLE;
-use g1::gait::{Feet, Gait, MotorUse, Pace, Signs, Verdict};
+use g1::gait::{Conduct, Feet, MotorUse, Verdict};
 use serde::Serialize;
 use vocabulary::{Cause, Counts};
 
@@ -19,18 +19,19 @@ pub(super) struct Tally {
     pub(super) ends: Counts,
     pub(super) steps: f64,
     pub(super) squared_error: f64,
-    /// Steps of settled robots, and the squared error in them.
+    /// Steps of settled robots, and the squared errors in them: planar, and of the yaw rate.
     pub(super) settled_steps: f64,
     pub(super) settled_error: f64,
+    pub(super) settled_yaw_error: f64,
     /// Squared errors of forward velocity, lateral velocity and yaw rate.
     pub(super) squared_errors: [f64; 3],
     pub(super) energy: f64,
     pub(super) style: f64,
     pub(super) task: f64,
-    pub(super) yaw_rate: f64,
-    pub(super) gait: Gait,
+    pub(super) conduct: Conduct,
+    /// Of settled robots alone.
+    pub(super) settled_conduct: Conduct,
     pub(super) feet: Feet,
-    pub(super) pace: Pace,
     pub(super) motors: MotorUse,
     /// Of each episode, in order.
     pub(super) traces: Vec<Trace>,
@@ -61,16 +62,16 @@ impl Tally {
         self.squared_error += other.squared_error;
         self.settled_steps += other.settled_steps;
         self.settled_error += other.settled_error;
+        self.settled_yaw_error += other.settled_yaw_error;
         for axis in 0..3 {
             self.squared_errors[axis] += other.squared_errors[axis];
         }
         self.energy += other.energy;
         self.style += other.style;
         self.task += other.task;
-        self.yaw_rate += other.yaw_rate;
-        self.gait.merge(&other.gait);
+        self.conduct.merge(&other.conduct);
+        self.settled_conduct.merge(&other.settled_conduct);
         self.feet.merge(&other.feet);
-        self.pace.merge(&other.pace);
         self.motors.merge(&other.motors);
         self.traces.extend(other.traces);
     }
@@ -85,12 +86,17 @@ impl Tally {
         self.ends.total() - self.ends.by(Cause::TimeOut)
     }
 
-    /// What the gait is.
+    /// What the gait is, by the whole command. A robot that is setting off or turning in does not do yet what it is told.
     fn verdict(&self) -> Verdict {
         // Of short episodes one fall among many would make the mean a short life.
         let most_fell = 2 * self.cut_short() as usize > self.episodes;
         let seconds = most_fell.then(|| self.seconds_survived());
-        Verdict::of(&Signs::of(&self.gait, &self.pace, seconds, CONTROL_HZ))
+        let conduct = if self.settled_conduct.is_empty() {
+            &self.conduct
+        } else {
+            &self.settled_conduct
+        };
+        conduct.verdict(seconds, CONTROL_HZ)
     }
 
     pub(super) fn outcome(&self) -> Outcome {
@@ -98,31 +104,35 @@ impl Tally {
         let root = |sum: f64| mean(sum).sqrt();
         let (torque_joint, torque_peak) = self.motors.torque_peak();
         let (speed_joint, joint_speed_peak) = self.motors.speed_peak();
+        let settled =
+            |sum: f64| (self.settled_steps > 0.0).then(|| (sum / self.settled_steps).sqrt());
         let verdict = self.verdict();
+        let gait = self.conduct.gait();
+        let [forward, left, yaw_rate] = self.conduct.pace().velocity().unwrap_or_default();
         Outcome {
             episodes: self.episodes,
             survival: (self.episodes as u64 - self.cut_short()) as f64 / self.episodes as f64,
             ends: self.ends,
             seconds_survived: self.seconds_survived(),
             rmse: root(self.squared_error),
-            rmse_settled: (self.settled_steps > 0.0)
-                .then(|| (self.settled_error / self.settled_steps).sqrt()),
+            rmse_settled: settled(self.settled_error),
             rmse_forward: root(self.squared_errors[0]),
             rmse_lateral: root(self.squared_errors[1]),
             rmse_yaw_rate: root(self.squared_errors[2]),
-            velocity: self.pace.velocity().unwrap_or_default(),
-            yaw_rate: mean(self.yaw_rate),
+            rmse_yaw_rate_settled: settled(self.settled_yaw_error),
+            velocity: [forward, left],
+            yaw_rate,
             energy_j: mean(self.energy) * 1_000.0,
             style_reward: mean(self.style),
             task_reward: mean(self.task),
             gait: verdict.to_string(),
             gait_is_good: verdict.is_good(),
-            hip_correlation: self.gait.hip_correlation(),
-            contact_correlation: self.gait.contact_correlation(),
-            stride_rate_hz: self.gait.stride_rate(CONTROL_HZ),
-            duty_factor: self.gait.duty_factor(),
-            flight_share: self.gait.flight_share(),
-            pelvis_height: self.gait.pelvis_height(),
+            hip_correlation: gait.hip_correlation(),
+            contact_correlation: gait.contact_correlation(),
+            stride_rate_hz: gait.stride_rate(CONTROL_HZ),
+            duty_factor: gait.duty_factor(),
+            flight_share: gait.flight_share(),
+            pelvis_height: gait.pelvis_height(),
             foot_clearance: self.feet.clearance(),
             foot_slip: self.feet.slip_speed(),
             slip_per_stride: self.feet.slip_per_stride(CONTROL_HZ),
@@ -157,6 +167,8 @@ pub(super) struct Outcome {
     pub(super) rmse_lateral: f64,
     /// √(mean (ω* − ω)²), about the vertical, rad/s.
     pub(super) rmse_yaw_rate: f64,
+    /// The same without the first two seconds after a start or a new command.
+    pub(super) rmse_yaw_rate_settled: Option<f64>,
     /// Mean planar velocity in the heading frame, m/s.
     pub(super) velocity: [f64; 2],
     /// Mean yaw rate, rad/s.
@@ -165,7 +177,7 @@ pub(super) struct Outcome {
     pub(super) energy_j: f64,
     pub(super) style_reward: f64,
     pub(super) task_reward: f64,
-    /// The verdict in words.
+    /// The verdict in words, of settled robots and by the whole command: forward, lateral, yaw rate.
     pub(super) gait: String,
     pub(super) gait_is_good: bool,
     pub(super) hip_correlation: Option<f64>,
@@ -206,6 +218,7 @@ mod tests {
             squared_error: 25.0,
             settled_steps: 50.0,
             settled_error: 2.0,
+            settled_yaw_error: 8.0,
             squared_errors: [16.0, 9.0, 1.0],
             energy: 200.0,
             ..Tally::default()
@@ -216,6 +229,7 @@ mod tests {
             squared_error: 75.0,
             settled_steps: 150.0,
             settled_error: 6.0,
+            settled_yaw_error: 24.0,
             squared_errors: [48.0, 27.0, 3.0],
             energy: 600.0,
             ..Tally::default()
@@ -225,9 +239,58 @@ mod tests {
         assert_eq!(outcome.seconds_survived, 2.0); // 400 steps / 4 / 50 Hz
         assert_eq!(outcome.rmse, 0.5); // √(100 / 400)
         assert_eq!(outcome.rmse_settled, Some(0.2)); // √(8 / 200)
+        assert_eq!(outcome.rmse_yaw_rate_settled, Some(0.4)); // √(32 / 200)
         assert_eq!(outcome.rmse_forward, 0.4); // √(64 / 400)
         assert_eq!(outcome.rmse_yaw_rate, 0.1);
         assert_eq!(outcome.energy_j, 2_000.0); // 2 J a step
+    }
+
+    /// Steps of one robot that keeps both feet on the ground.
+    fn standing(command: [f32; 3], velocity: [f32; 3], steps: usize) -> Conduct {
+        let mut features = [0.0; g1::FEATURES];
+        features[g1::observation::HEIGHT] = 0.78;
+        let (mut conduct, forces) = (Conduct::default(), [157.0; 2]);
+        for _ in 0..steps {
+            conduct.add(command, velocity, &features, forces, Some(forces));
+        }
+        conduct.close();
+        conduct
+    }
+
+    fn judged(conduct: Conduct, settled_conduct: Conduct) -> Outcome {
+        let tally = Tally {
+            episodes: 1,
+            steps: 150.0,
+            conduct,
+            settled_conduct,
+            ..Tally::default()
+        };
+        tally.outcome()
+    }
+
+    #[test]
+    fn who_stands_though_told_to_turn_is_not_good() {
+        let told = [0.0, 0.0, 1.0];
+        let still = standing(told, [0.0, 0.0, 0.01], 150);
+        let outcome = judged(still, still);
+        assert!(!outcome.gait_is_good);
+        assert_eq!(outcome.gait, "still: 0.01 of 1.00 rad/s");
+        assert!((outcome.yaw_rate - 0.01).abs() < 1e-6);
+    }
+
+    #[test]
+    fn who_is_setting_off_is_not_judged_unless_nobody_ever_settles() {
+        let stay = [0.0; 3];
+        let (mut all, settled) = (
+            standing(stay, [0.5, 0.0, 0.0], 100),
+            standing(stay, [0.0; 3], 50),
+        );
+        all.merge(&settled);
+        assert_eq!(judged(all, settled).gait, "stand");
+        // (100·0.5 + 50·0) / 150
+        let short = judged(all, Conduct::default());
+        assert_eq!(short.gait, "drift: 0.33 m/s, asked to stay");
+        assert!((short.velocity[0] - 1.0 / 3.0).abs() < 1e-6);
     }
 
     #[test]

@@ -6,7 +6,9 @@ use super::*;
 const WALK: Signs = Signs {
     seconds_upright: Some(20.0),
     speeds: Some((0.8, 0.75)),
-    drift: 0.75,
+    turns: None,
+    drift: 0.02,
+    swerve: 0.02,
     sideways: false,
     hip_correlation: Some(-0.8),
     contact_correlation: Some(-0.6),
@@ -83,6 +85,85 @@ fn what_averages_do_not_see_is_said() {
 }
 
 #[test]
+fn too_much_is_not_what_was_asked_for_either() {
+    let of = |asked: f64, done: f64| Signs {
+        speeds: Some((asked, done)),
+        ..WALK
+    };
+    assert_eq!(said(of(0.8, 1.3)), "rush: 1.30 of 0.80 m/s"); // above 1.2
+    assert_eq!(said(of(0.8, 1.15)), "walk");
+    // Of next to nothing half as much again is nothing: up to 0.1 m/s more is let pass.
+    assert_eq!(said(of(0.1, 0.19)), "walk");
+    assert_eq!(said(of(0.1, 0.21)), "rush: 0.21 of 0.10 m/s");
+    let spun = Signs {
+        speeds: None,
+        turns: Some((1.0, 1.6)),
+        ..WALK
+    };
+    assert_eq!(said(spun), "rush: 1.60 of 1.00 rad/s");
+}
+
+#[test]
+fn a_turn_wants_steps_and_no_hop() {
+    let turn = Signs {
+        speeds: None,
+        turns: Some((0.8, 0.7)),
+        hip_correlation: Some(0.5),
+        ..WALK
+    };
+    assert_eq!(said(turn), "turn");
+    assert!(Verdict::of(&turn).is_good());
+    let hop = Signs {
+        contact_correlation: Some(0.6),
+        ..turn
+    };
+    assert_eq!(said(hop), "hop: feet land together (+0.60)");
+    let slide = Signs {
+        stride_rate: 0.1,
+        contact_correlation: None,
+        ..turn
+    };
+    assert_eq!(said(slide), "shuffle: legs do not alternate (+0.00)");
+    let crawl = Signs {
+        turns: Some((0.8, 0.3)),
+        ..turn
+    };
+    assert_eq!(said(crawl), "crawl: 0.30 of 0.80 rad/s");
+    for signs in [hop, slide, crawl] {
+        assert!(!Verdict::of(&signs).is_good());
+    }
+}
+
+#[test]
+fn a_way_may_be_off_by_a_quarter_of_its_speed_and_a_fifth_of_a_radian_per_second() {
+    let run = Signs {
+        speeds: Some((2.0, 1.9)),
+        flight_share: 0.15,
+        ..WALK
+    };
+    let off = |drift, swerve| Signs {
+        drift,
+        swerve,
+        ..run
+    };
+    assert_eq!(said(off(0.49, 0.19)), "run");
+    assert_eq!(said(off(0.51, 0.19)), "sidle: 0.51 m/s off its way");
+    assert_eq!(
+        said(off(0.49, 0.21)),
+        "veer: 0.21 rad/s, asked to go straight"
+    );
+    let curve = |turned| Signs {
+        turns: Some((0.5, turned)),
+        ..run
+    };
+    assert_eq!(said(curve(0.26)), "run");
+    assert_eq!(said(curve(0.24)), "veer: 0.24 of 0.50 rad/s");
+    // Half as much again is 0.75.
+    assert_eq!(said(curve(0.74)), "run");
+    assert_eq!(said(curve(0.76)), "veer: 0.76 of 0.50 rad/s");
+}
+
+#[test]
 fn standing_on_request_is_told_from_stepping_and_drifting() {
     let stay = Signs {
         speeds: None,
@@ -93,6 +174,14 @@ fn standing_on_request_is_told_from_stepping_and_drifting() {
     assert_eq!(said(stay), "step in place: 1.2 strides/s, asked to stand");
     let drift = Signs { drift: 0.2, ..stay };
     assert_eq!(said(drift), "drift: 0.20 m/s, asked to stay");
+    let spin = Signs {
+        swerve: 0.2,
+        ..stay
+    };
+    assert_eq!(said(spin), "spin: 0.20 rad/s, asked to stay");
+    for signs in [stay, drift, spin] {
+        assert!(!Verdict::of(&signs).is_good());
+    }
 }
 
 #[test]
@@ -130,11 +219,14 @@ fn signs_are_read_from_the_sums() {
         features[7] = left;
         features[13] = -left;
         gait.add(&features, forces, None);
-        pace.add([0.5, 0.0, 0.0], [0.4, 0.0]);
+        pace.add([0.5, 0.0, 0.5], [0.4, 0.05, 0.45]);
     }
     let signs = Signs::of(&gait, &pace, Some(20.0), 50.0);
     let (asked, speed) = signs.speeds.unwrap();
     assert!((asked - 0.5).abs() < 1e-6 && (speed - 0.4).abs() < 1e-6);
+    let (asked, turned) = signs.turns.unwrap();
+    assert!((asked - 0.5).abs() < 1e-6 && (turned - 0.45).abs() < 1e-6);
+    assert!((signs.drift - 0.05).abs() < 1e-6 && signs.swerve == 0.0);
     assert!((signs.pelvis_height - 0.7).abs() < 1e-6);
     assert!(signs.hip_correlation.unwrap() < -0.99);
     assert_eq!(Verdict::of(&signs), Verdict::Walk);

@@ -38,12 +38,15 @@ fn a_scenario_has_a_file_with_its_panels() {
     let tally = Tally {
         episodes: 1,
         steps: 10.0,
+        squared_error: 0.9,
+        squared_errors: [0.0, 0.0, 2.5],
         traces: vec![trace(10, 0.5)],
         ..Tally::default()
     };
     write(folder.path(), &[scenario], &[tally], &CONDITIONS).unwrap();
     let svg = std::fs::read_to_string(folder.path().join("plots/turn.svg")).unwrap();
     for text in [
+        "RMSE 0.30 m/s and 0.50 rad/s", // √(0.9 / 10), √(2.5 / 10)
         "forward velocity",
         "yaw rate",
         "hip pitch",
