@@ -57,6 +57,8 @@ pub(crate) struct StoredReport {
     task_mean: f64,
     /// None ended, or it is a checkpoint of a program that did not measure it.
     episode_share: Option<f64>,
+    /// `None` in a checkpoint of a program that did not measure it.
+    task_std: Option<f64>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -197,6 +199,7 @@ impl State {
                 style_max: report.style_max,
                 task_mean: report.task_mean,
                 episode_share: config.episode_share(report),
+                task_std: Some(report.task_std),
             });
         }
         report
@@ -279,6 +282,8 @@ impl StoredReport {
             style_max: self.style_max,
             task_mean: self.task_mean,
             episode_share: self.episode_share.unwrap_or(f64::NAN),
+            task_std: self.task_std.unwrap_or(f64::NAN),
+            // Filled when it is sent.
             ..RewardReport::default()
         }
     }

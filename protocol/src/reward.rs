@@ -38,7 +38,7 @@ pub struct RewardReport {
     pub style_max: f64,
     /// Mean task reward.
     pub task_mean: f64,
-    /// Standard deviation of the task reward.
+    /// Standard deviation of the task reward; NaN where it is not known.
     pub task_std: f64,
     /// Mean length of the episodes that ended, as a share of the longest possible; NaN where none ended.
     pub episode_share: f64,

@@ -146,7 +146,6 @@ impl RolloutPublisher {
             actor: self.actor,
             environments: self.layout.environments as u32,
             steps: self.layout.steps as u32,
-            observation_seconds: 0.0,
             incarnation: self.incarnation,
             sequence: self.sequence,
             ..header

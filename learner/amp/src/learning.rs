@@ -223,6 +223,7 @@ impl Learning {
             style_min: style[2],
             style_max: style[3],
             task_mean: task[0],
+            task_std: task[1],
             reward_mean,
             style_weight,
             episode_length: episode_length(batch),

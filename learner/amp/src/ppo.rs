@@ -62,8 +62,8 @@ pub struct PpoFigures {
     pub gradient_norm: f64,
     /// Entropy after the update.
     pub entropy: f64,
-    /// Mean symmetry loss, 0 if it is off.
-    pub asymmetry: f64,
+    /// Mean symmetry loss; none if no row was a lesson in it.
+    pub asymmetry: Option<f64>,
 }
 
 /// Actor, critic, exploration and their optimizer.
@@ -210,6 +210,7 @@ impl Ppo {
         let whole = normalization(rows.advantages.iter().copied());
         let mut figures = PpoFigures::default();
         let mut steps = 0;
+        let mut asymmetry = (0.0, 0);
         for epoch in 0..self.config.epochs {
             let last_epoch = epoch + 1 == self.config.epochs;
             let indices = order.shuffle(count, rng);
@@ -235,7 +236,7 @@ impl Ppo {
                 figures.value_loss += sums.value_loss;
                 figures.clip_fraction += sums.clipped as f64 / indices.len() as f64;
                 figures.gradient_norm += f64::from(norm);
-                figures.asymmetry += sums.asymmetry;
+                asymmetry = (asymmetry.0 + sums.asymmetry, asymmetry.1 + sums.lessons);
                 kl = (kl.0 + sums.kl, kl.1 + sums.kl_rows);
                 steps += 1;
             }
@@ -253,10 +254,10 @@ impl Ppo {
             &mut figures.value_loss,
             &mut figures.clip_fraction,
             &mut figures.gradient_norm,
-            &mut figures.asymmetry,
         ] {
             *figure /= f64::from(steps.max(1));
         }
+        figures.asymmetry = (asymmetry.1 > 0).then(|| asymmetry.0 / f64::from(steps));
         figures.entropy = f64::from(values(surrogate::entropy(self.log_sigma_tensor(sigma)))[0]);
         Ok(figures)
     }

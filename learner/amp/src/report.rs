@@ -24,6 +24,8 @@ pub struct IterationReport {
     pub style_max: f64,
     /// Mean task reward rᴳ.
     pub task_mean: f64,
+    /// Its standard deviation over the batch's transitions.
+    pub task_std: f64,
     /// Mean blended reward r, before scaling.
     pub reward_mean: f64,
     /// Mean wˢ.
@@ -49,8 +51,8 @@ pub struct IterationReport {
     pub kl: f64,
     /// Share of ratios outside the clip range, over all minibatches.
     pub clip_fraction: f64,
-    /// Mean symmetry loss over all minibatches, 0 if it is off.
-    pub asymmetry: f64,
+    /// Mean symmetry loss over all minibatches; none if no row was a lesson in it: it is off, or all such rows are mirrored.
+    pub asymmetry: Option<f64>,
     /// Adam's rate for the next iteration.
     pub learning_rate: f64,
     /// Mean global norm of PPO's gradient before clipping.

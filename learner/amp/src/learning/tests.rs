@@ -204,10 +204,36 @@ fn the_report_counts_what_the_batch_holds() {
     let mean = |x: &[f32]| x.iter().map(|x| f64::from(*x)).sum::<f64>() / 60.0;
     assert!((report.energy_j - 1000.0 * mean(&batch.energies)).abs() < 1e-6);
     assert!((report.rmse.powi(2) - mean(&batch.tracking_errors)).abs() < 1e-9);
+    let squares: Vec<f32> = batch.task_rewards.iter().map(|x| x * x).collect();
+    let variance = mean(&squares) - mean(&batch.task_rewards).powi(2);
+    assert!(variance > 0.05 && (report.task_std.powi(2) - variance).abs() < 1e-6);
     let blended = 0.75 * report.task_mean + 0.25 * report.style_mean;
     assert!((report.reward_mean - blended).abs() < 1e-6);
     assert!(report.style_min <= report.style_mean && report.style_mean <= report.style_max);
     assert!(report.kl >= 0.0 && report.gradient_norm > 0.0);
+    assert_eq!(report.asymmetry, None); // off by default, and then not measured
+}
+
+#[test]
+fn the_symmetry_loss_is_told_where_it_is_measured() {
+    let mut config = config();
+    config.ppo.symmetry_weight = 1.0;
+    for (mirrored_share, told) in [(0.0, true), (0.5, false)] {
+        // Every other row mirrored: those of the quarter that would be lessons are among them.
+        config.ppo.mirrored_share = mirrored_share;
+        let mut learning = Learning::new(config.clone(), simple(), 11).expect("usable");
+        let batch = batch(&learning, 0);
+        let mut experts = |rows: &mut [f32]| rows.fill(0.1);
+        let report = learning
+            .iterate(&batch, &mut experts, RULE, Granularity::Sample)
+            .expect("finite");
+        assert_eq!(
+            report.asymmetry.is_some_and(|loss| loss > 0.0),
+            told,
+            "{:?}",
+            report.asymmetry
+        );
+    }
 }
 
 #[test]

@@ -17,6 +17,8 @@ pub(super) struct Sums {
     pub(super) kl_rows: usize,
     pub(super) clipped: usize,
     pub(super) asymmetry: f64,
+    /// Rows that `asymmetry` is over.
+    pub(super) lessons: usize,
 }
 
 impl AddAssign for Sums {
@@ -28,6 +30,7 @@ impl AddAssign for Sums {
         self.kl_rows += part.kl_rows;
         self.clipped += part.clipped;
         self.asymmetry += part.asymmetry;
+        self.lessons += part.lessons;
     }
 }
 
@@ -90,6 +93,7 @@ impl Ppo {
                 }
                 None => loss,
             };
+            sums.lessons += chunk.lessons.iter().filter(|is| **is > 0.0).count();
             let loss = if self.config.symmetry_weight > 0.0 {
                 let asymmetry = surrogate::symmetry_loss(
                     means.clone(),
