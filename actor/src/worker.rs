@@ -53,10 +53,10 @@ impl Worker {
             seed,
         )
         .context("setting up the fleet")?;
-        let shape = shape(header, weights)?;
+        let (shape, clip) = network(header, weights)?;
         let mut worker = Self {
             fleet,
-            policy: Policy::new(shape),
+            policy: Policy::new(shape, clip),
             generator: Pcg64Mcg::seed_from_u64(mix(seed, 0)),
         };
         if header.order() != Some(WeightsOrder::Collect) {
@@ -129,7 +129,7 @@ impl Worker {
         }
     }
 
-    /// Takes over new weights; another shape is another policy.
+    /// Takes over new weights; another shape or clip is another policy.
     pub(crate) fn adopt(
         &mut self,
         config: &ActorConfig,
@@ -144,9 +144,9 @@ impl Worker {
             self.fleet
                 .set_randomization(config.randomization.at(samples));
         }
-        let shape = shape(header, flat.len())?;
-        if *self.policy.shape() != shape {
-            self.policy = Policy::new(shape);
+        let (shape, clip) = network(header, flat.len())?;
+        if (self.policy.shape(), self.policy.clip()) != (&shape, clip) {
+            self.policy = Policy::new(shape, clip);
         }
         self.policy
             .load(flat)
@@ -169,8 +169,9 @@ impl Worker {
     }
 }
 
-/// The policy's shape, if so many weights have it: nothing is reserved for one that they have not.
-fn shape(header: &WeightsHeader, weights: usize) -> Result<Shape> {
+/// The policy's shape, if so many weights have it (nothing is reserved for one that they have not), and what it cuts
+/// observations to.
+fn network(header: &WeightsHeader, weights: usize) -> Result<(Shape, f32)> {
     let hidden: Vec<usize> = header
         .hidden()
         .iter()
@@ -184,7 +185,11 @@ fn shape(header: &WeightsHeader, weights: usize) -> Result<Shape> {
         header.version,
         shape.hidden
     );
-    Ok(shape)
+    Policy::check_clip(header.observation_clip).with_context(|| {
+        let version = header.version;
+        format!("policy version {version} cannot be used; use programs of one build")
+    })?;
+    Ok((shape, header.observation_clip))
 }
 
 /// One well-mixed number of two (SplitMix64's finaliser), so that neighbours share no stream.
@@ -203,6 +208,32 @@ mod tests {
     use sim::{CurriculumConfig, RandomizationConfig, Starts, TaskConfig};
 
     use super::*;
+
+    #[test]
+    fn a_policy_acts_with_the_clip_that_comes_with_its_weights() {
+        let config = growing();
+        let header = |version: u64, clip: f32| {
+            let (order, layout) = (WeightsOrder::Collect, config.layout);
+            WeightsHeader::new(version, order, &[4], clip, layout, true)
+        };
+        let nowhere = Checkpoints::new(std::path::PathBuf::new());
+        let flat = vec![0.5; Shape::new(&[4]).len()];
+        let mut worker = Worker::begin(&config, 0, &header(0, 5.0), flat.len(), &nowhere).unwrap();
+        worker.adopt(&config, &header(1, 1.5), &flat).unwrap();
+        assert_eq!(worker.policy.clip(), 1.5);
+        // Of the same shape, but from a learner that was resumed with another configuration.
+        worker.adopt(&config, &header(2, 8.0), &flat).unwrap();
+        assert_eq!(worker.policy.clip(), 8.0);
+        for none in [0.0, f32::NAN] {
+            let refused = worker.adopt(&config, &header(3, none), &flat).unwrap_err();
+            let words = format!("{refused:#}");
+            assert!(
+                words.contains("clip") && words.contains("one build"),
+                "{words}"
+            );
+        }
+        assert_eq!(worker.policy.clip(), 8.0);
+    }
 
     /// A task whose kernel goes from 2 to 4, and a Table I that grows, between 1,000 and 3,000 samples.
     fn growing() -> ActorConfig {
@@ -242,7 +273,8 @@ mod tests {
         let flat = vec![0.5; shape.len()];
         let header = |version, samples| {
             let order = WeightsOrder::Collect;
-            WeightsHeader::new(version, order, &shape.hidden, config.layout, true).after(samples)
+            WeightsHeader::new(version, order, &shape.hidden, 5.0, config.layout, true)
+                .after(samples)
         };
         let begin = |header: &WeightsHeader| {
             Worker::begin(&config, 0, header, flat.len(), &run.checkpoints()).unwrap()

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import iceoryx2 as iox2
 
-PROTOCOL_VERSION = "3"
+PROTOCOL_VERSION = "4"
 PHASE_ONE = 2**64 - 1
 
 
@@ -29,7 +29,7 @@ class RewardReport(ctypes.Structure):
         ("learner", ctypes.c_uint64), ("sequence", ctypes.c_uint64), ("iteration", ctypes.c_uint64),
         ("samples", ctypes.c_uint64), ("style_mean", ctypes.c_double), ("style_std", ctypes.c_double),
         ("style_min", ctypes.c_double), ("style_max", ctypes.c_double), ("task_mean", ctypes.c_double),
-        ("task_std", ctypes.c_double),
+        ("task_std", ctypes.c_double), ("episode_share", ctypes.c_double),
     ]
 
     @staticmethod

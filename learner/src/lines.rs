@@ -166,6 +166,7 @@ impl Lines {
             state.iteration,
             order,
             &config.learning.policy.hidden,
+            config.learning.policy.observation_clip,
             terms.layout,
             terms.lockstep,
         )

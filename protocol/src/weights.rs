@@ -34,7 +34,7 @@ pub enum WeightsOrder {
 
 /// Which weights these are, and what to do with them.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ZeroCopySend)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, ZeroCopySend)]
 #[type_name("ampco.WeightsHeader")]
 pub struct WeightsHeader {
     /// Incarnation of the learner; filled by [`WeightsPublisher::broadcast`].
@@ -56,8 +56,8 @@ pub struct WeightsHeader {
     pub steps: u32,
     /// 1: collect one rollout and wait for the next version. 0: keep collecting with the newest.
     pub lockstep: u32,
-    /// Keeps the size a multiple of eight; always 0.
-    pub reserved: u32,
+    /// What normalised observations are cut to, ±: the weights mean nothing without it.
+    pub observation_clip: f32,
 }
 
 impl WeightsHeader {
@@ -69,6 +69,7 @@ impl WeightsHeader {
         version: u64,
         order: WeightsOrder,
         hidden: &[usize],
+        observation_clip: f32,
         layout: RolloutLayout,
         lockstep: bool,
     ) -> Self {
@@ -91,7 +92,7 @@ impl WeightsHeader {
             environments: layout.environments as u32,
             steps: layout.steps as u32,
             lockstep: u32::from(lockstep),
-            reserved: 0,
+            observation_clip,
         }
     }
 
@@ -236,10 +237,11 @@ mod tests {
     #[test]
     fn a_header_says_back_what_it_was_made_of() {
         let order = WeightsOrder::RestoreThenCollect;
-        let header = WeightsHeader::new(9, order, &[256, 128, 64], LAYOUT, true).after(4_608);
+        let header = WeightsHeader::new(9, order, &[256, 128, 64], 2.5, LAYOUT, true).after(4_608);
         assert_eq!(header.order(), Some(order));
         assert_eq!((header.version, header.samples), (9, 4_608));
         assert_eq!(header.hidden(), [256, 128, 64]);
+        assert_eq!(header.observation_clip, 2.5);
         assert_eq!(header.layout(), LAYOUT);
         assert!(header.is_lockstep());
     }

@@ -129,18 +129,20 @@ fn a_weights_header_says_what_it_is_or_is_refused() {
         hidden,
         counts(),
         counts(),
+        floats(),
         0..100_000_usize,
     );
     always(
         2000,
         &inputs,
-        |(order, layers, hidden, environments, steps, numbers)| {
+        |(order, layers, hidden, environments, steps, observation_clip, numbers)| {
             let header = WeightsHeader {
                 order,
                 layers,
                 hidden,
                 environments,
                 steps,
+                observation_clip,
                 ..WeightsHeader::default()
             };
             assert_eq!(header.order().is_some(), order < 4);
@@ -153,7 +155,10 @@ fn a_weights_header_says_what_it_is_or_is_refused() {
                 .collect();
             let shape = policy::Shape::new(&widths);
             if shape.fits(numbers) {
-                let mut policy = policy::Policy::new(shape);
+                if let Err(error) = policy::Policy::check_clip(observation_clip) {
+                    return assert_clear(&error);
+                }
+                let mut policy = policy::Policy::new(shape, observation_clip);
                 policy.load(&vec![0.5; numbers]).expect("so many numbers");
             }
         },

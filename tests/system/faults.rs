@@ -117,7 +117,7 @@ fn refused(header: WeightsHeader, flat: &[f32]) -> String {
 #[test]
 fn weights_that_are_none_are_refused_by_the_actor() {
     let header =
-        |hidden: &[usize]| WeightsHeader::new(0, WeightsOrder::Collect, hidden, LAYOUT, true);
+        |hidden: &[usize]| WeightsHeader::new(0, WeightsOrder::Collect, hidden, 5.0, LAYOUT, true);
     let shape = policy::Shape::new(&[16, 16]);
     let mut flat = vec![0.5; shape.len()];
     flat[900] = f32::NAN;
@@ -137,6 +137,11 @@ fn weights_that_are_none_are_refused_by_the_actor() {
         ..header(&[16, 16])
     };
     assert!(refused(hostile, &flat).contains("4294967295"));
+    let unclipped = WeightsHeader {
+        observation_clip: f32::NAN,
+        ..header(&[16, 16])
+    };
+    assert!(refused(unclipped, &flat).contains("clip of observations is NaN"));
     let other = WeightsHeader {
         environments: u32::MAX,
         steps: u32::MAX,

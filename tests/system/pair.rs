@@ -1,6 +1,6 @@
 //! One actor and one learner: rollouts arrive, the version grows, the actor adopts it.
 
-use protocol::{Domain, Node, Shutdown, WeightsSubscriber};
+use protocol::{Domain, Node, RewardSubscriber, Shutdown, WeightsSubscriber};
 use rustix::process::Signal;
 
 use crate::harness::{Alone, Process, metrics, until, until_iteration};
@@ -8,9 +8,11 @@ use crate::harness::{Alone, Process, metrics, until, until_iteration};
 #[test]
 fn rollouts_arrive_and_every_version_is_adopted() {
     let run = Alone::new(1);
+    run.set("policy.observation_clip", 1.5);
     let domain = Domain::for_run(run.path()).expect("a domain");
     let node = Node::join(&domain, "monitor", &Shutdown::manual()).expect("joined");
     let weights = WeightsSubscriber::new(&node).expect("opened");
+    let mut rewards = RewardSubscriber::new(&node).expect("opened");
     let mut learner = run.start("ampco-learner", &[]);
     let _actor = run.start("ampco-actor", &["--index", "0"]);
 
@@ -19,17 +21,34 @@ fn rollouts_arrive_and_every_version_is_adopted() {
         if let Some(newest) = weights.newest().expect("readable") {
             assert!(newest.header().version >= version, "versions only grow");
             version = newest.header().version;
+            assert_eq!(newest.header().observation_clip, 1.5, "as it is configured");
             assert!(newest.flat().iter().all(|number| number.is_finite()));
         }
         node.tick();
         (version >= 4).then_some(())
     });
-    for line in metrics(run.path()) {
+    let first = until("a report", || {
+        node.tick();
+        rewards.receive().expect("readable")
+    });
+    let lines = metrics(run.path());
+    // What the scheduler is told is what is written down.
+    assert_eq!(lines[0]["iteration"], first.report.iteration);
+    assert_eq!(lines[0]["task_std"], first.report.task_std);
+    for line in lines {
         // Lock-step: were the actor a version behind, its rollout would not have been used.
         assert_eq!(line["policy_lag"], 0.0);
         assert_eq!(line["rollouts"], 1);
         assert_eq!(line["stale"], 0);
         assert_eq!(line["dropped"], 0);
+        for part in ["physics", "observation", "inference"] {
+            let seconds = line["timing"][format!("{part}_seconds")].as_f64();
+            assert!(seconds > Some(0.0), "{part} takes time: {}", line["timing"]);
+        }
+        assert!(
+            line["task_std"].as_f64() > Some(0.0),
+            "rewards vary: {line}"
+        );
     }
     learner.signal(Signal::TERM);
     assert!(learner.end().success(), "{}", learner.stderr.text());

@@ -1,6 +1,6 @@
 //! Why weights were refused.
 
-/// Refused weights; the policy then keeps those it has.
+/// Refused weights, or what comes with them; the policy then keeps those it has.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PolicyError {
     /// The vector is not as long as the shape says.
@@ -24,6 +24,12 @@ pub enum PolicyError {
     Deviation {
         /// Index of the action.
         action: usize,
+        /// Its value.
+        value: f32,
+    },
+    /// A limit of normalised observations that is no limit.
+    #[error("the clip of observations is {value}, not a finite number above zero")]
+    Clip {
         /// Its value.
         value: f32,
     },

@@ -32,5 +32,5 @@ mod shape;
 
 pub use error::PolicyError;
 pub use gaussian::Gaussian;
-pub use policy::{CLIP, Policy};
+pub use policy::Policy;
 pub use shape::{INPUTS, INVERSE_DEVIATION, LayerPlace, MEAN, OUTPUTS, SIGMA, Shape};

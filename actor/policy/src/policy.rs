@@ -9,9 +9,6 @@ use crate::layer::{Activation, Layer};
 use crate::shape::{INVERSE_DEVIATION, MEAN, SIGMA};
 use crate::{INPUTS, OUTPUTS, PolicyError, Shape};
 
-/// Normalised observations are cut to ± this.
-pub const CLIP: f32 = 5.0;
-
 /// Rows that go through all layers together: their activations stay in the second-level cache.
 const BLOCK: usize = 16 * TILE_ROWS;
 
@@ -21,6 +18,7 @@ pub struct Policy {
     /// Vectors of this machine.
     arch: Arch,
     shape: Shape,
+    clip: f32,
     mean: [f32; INPUTS],
     inverse_deviation: [f32; INPUTS],
     gaussian: Gaussian,
@@ -30,11 +28,13 @@ pub struct Policy {
 }
 
 impl Policy {
-    /// A policy whose weights are zero: until some are loaded its mean action is zero, and its σ is one.
+    /// A policy whose weights are zero: until some are loaded its mean action is zero, and its σ is one. It cuts normalised
+    /// observations to ± `clip`, which belongs to its weights as their shape does: they were trained with it.
     ///
     /// # Panics
-    /// If a hidden layer has no units.
-    pub fn new(shape: Shape) -> Self {
+    /// If a hidden layer has no units, or [`Self::check_clip`] refuses the clip.
+    pub fn new(shape: Shape, clip: f32) -> Self {
+        Self::check_clip(clip).expect("who takes a clip from elsewhere checks it");
         assert!(
             !shape.hidden.contains(&0),
             "a hidden layer without units passes nothing on: {:?}",
@@ -60,6 +60,7 @@ impl Policy {
             arch: Arch::new(),
             mean: [0.0; INPUTS],
             inverse_deviation: [1.0; INPUTS],
+            clip,
             gaussian: Gaussian::new([1.0; OUTPUTS]),
             layers,
             buffers: [vec![0.0; BLOCK * widest], vec![0.0; BLOCK * widest]],
@@ -70,6 +71,22 @@ impl Policy {
     /// Its shape.
     pub fn shape(&self) -> &Shape {
         &self.shape
+    }
+
+    /// What normalised observations are cut to, ±.
+    pub fn clip(&self) -> f32 {
+        self.clip
+    }
+
+    /// Whether observations can be cut to ± `clip`.
+    ///
+    /// # Errors
+    /// If it is not a finite number above zero.
+    pub fn check_clip(clip: f32) -> Result<(), PolicyError> {
+        if clip > 0.0 && clip.is_finite() {
+            return Ok(());
+        }
+        Err(PolicyError::Clip { value: clip })
     }
 
     /// Its exploration.
@@ -152,7 +169,13 @@ impl Policy {
     fn block(&mut self, observations: &[f32], out: &mut [f32]) {
         let count = observations.len() / INPUTS;
         let [mut from, mut to] = self.buffers.each_mut();
-        normalise(observations, &self.mean, &self.inverse_deviation, from);
+        normalise(
+            observations,
+            &self.mean,
+            &self.inverse_deviation,
+            self.clip,
+            from,
+        );
         let mut stride = INPUTS;
         for layer in &self.layers {
             layer.forward(
@@ -173,11 +196,12 @@ impl Policy {
     }
 }
 
-/// clip((o − mean)·inverse deviation, ± [`CLIP`]) for rows `[n][82]`.
+/// clip((o − mean)·inverse deviation, ± `clip`) for rows `[n][82]`.
 fn normalise(
     observations: &[f32],
     mean: &[f32; INPUTS],
     inverse_deviation: &[f32; INPUTS],
+    clip: f32,
     out: &mut [f32],
 ) {
     for (row, out) in observations
@@ -185,7 +209,7 @@ fn normalise(
         .zip(out.chunks_exact_mut(INPUTS))
     {
         for i in 0..INPUTS {
-            out[i] = ((row[i] - mean[i]) * inverse_deviation[i]).clamp(-CLIP, CLIP);
+            out[i] = ((row[i] - mean[i]) * inverse_deviation[i]).clamp(-clip, clip);
         }
     }
 }

@@ -1,7 +1,8 @@
 //! The flat layout of a policy's weights, as the learner exports it and the processes ship it.
 //!
 //! One vector of f32, in this order: observation mean `[82]`, observation inverse standard deviation `[82]`, exploration
-//! standard deviation per action `[23]`, then for each layer its weights `[in][out]` row by row and its bias `[out]`.
+//! standard deviation per action `[23]`, then for each layer its weights `[in][out]` row by row and its bias `[out]`. Beside
+//! it, as the widths of the layers, goes what normalised observations are cut to.
 
 use std::ops::Range;
 

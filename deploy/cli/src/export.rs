@@ -79,8 +79,9 @@ fn model() -> String {
 fn files(kept: &Kept) -> Result<Vec<(&'static str, Vec<u8>)>> {
     let place = kept.path.display();
     let (shape, flat) = kept.weights()?;
-    let network =
-        Network::new(shape, flat).with_context(|| format!("checking policy.bin of {place}"))?;
+    let clip = kept.learning.policy.observation_clip;
+    let network = Network::new(shape, clip, flat)
+        .with_context(|| format!("checking policy.bin of {place}"))?;
     let mut origin = origin(kept, &network)?;
     let iteration = origin.iteration.to_string();
     let properties = [
@@ -139,6 +140,65 @@ fn write_all(folder: &Path, files: &[(&str, Vec<u8>)]) -> Result<Vec<(PathBuf, u
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evaluate::subject::Subject;
+
+    /// A copy of a shipped policy with another line in its configuration.
+    fn shipped_with(folder: &Path, line: &str, instead: &str) -> Result<Subject> {
+        let walk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../policies/walk");
+        for name in ["manifest.json", "policy.bin", "judge.bin"] {
+            std::fs::copy(walk.join(name), folder.join(name))?;
+        }
+        let config = std::fs::read_to_string(walk.join("config.toml"))?;
+        assert_eq!(config.matches(line).count(), 1);
+        std::fs::write(folder.join("config.toml"), config.replace(line, instead))?;
+        let place = Place {
+            runs_dir: "runs".into(),
+        };
+        Subject::open(&place, folder.to_str().context("text")?)
+    }
+
+    #[test]
+    fn an_export_cuts_observations_as_the_policy_was_trained() {
+        let folder = tempfile::tempdir().unwrap();
+        let clip = "observation_clip = 5.0";
+        let subject = shipped_with(folder.path(), clip, "observation_clip = 1.5").unwrap();
+        assert_eq!(subject.policy().unwrap().clip(), 1.5);
+        let files = files(&subject.kept).unwrap();
+        let (_, text) = files
+            .iter()
+            .find(|(name, _)| *name == "policy.json")
+            .unwrap();
+        let description: Description = serde_json::from_slice(text).unwrap();
+        assert_eq!(description.network.clip, 1.5);
+        // And its example is what the policy that acts here does.
+        let mut action = [0.0; policy::OUTPUTS];
+        let observation = &description.example.observation;
+        subject.policy().unwrap().means(observation, 1, &mut action);
+        assert_eq!(description.example.action, action);
+
+        let refused = shipped_with(folder.path(), clip, "observation_clip = -1.0");
+        let words = format!("{:#}", refused.err().unwrap());
+        assert!(
+            words.contains("config.toml") && words.contains("observation_clip"),
+            "{words}"
+        );
+    }
+
+    #[test]
+    fn the_task_is_the_one_that_the_curriculum_had_come_to() {
+        let folder = tempfile::tempdir().unwrap();
+        // `walk` has 4.01 million samples behind it: past the end of its curriculum, whose kernel is 4.
+        let subject = shipped_with(
+            folder.path(),
+            "to_samples = 2100000.0",
+            "to_samples = 2.1e6",
+        );
+        assert_eq!(subject.unwrap().task.kernel, 4.0);
+        let later = shipped_with(folder.path(), "to_samples = 2100000.0", "to_samples = 1e12");
+        // A millionth of the way from 2 to 4.
+        let kernel = later.unwrap().task.kernel;
+        assert!(kernel > 2.0 && kernel < 2.001, "{kernel}");
+    }
 
     #[test]
     fn the_model_steps_as_the_simulation_does() {

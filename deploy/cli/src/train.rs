@@ -121,6 +121,12 @@ impl Train {
                     theirs.hidden, theirs.critic_hidden
                 )));
             }
+            if own.observation_clip != theirs.observation_clip {
+                say(&format!(
+                    "--from {from}: its observations were cut to ±{}, here it will be policy.observation_clip={}",
+                    theirs.observation_clip, own.observation_clip
+                ));
+            }
             let path =
                 std::path::absolute(&kept.path).context("finding the policy to begin with")?;
             let path = path.to_str().context("the path of --from is not text")?;

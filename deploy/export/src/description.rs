@@ -157,7 +157,7 @@ impl Description {
                 output: onnx::OUTPUT.to_owned(),
                 hidden: network.hidden().to_vec(),
                 normalisation: "clip((observation − mean)·inverse_deviation, ±clip)".to_owned(),
-                clip: policy::CLIP,
+                clip: network.clip(),
             },
             control: Control {
                 policy_hz,

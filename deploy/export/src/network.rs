@@ -9,17 +9,24 @@ use sha2::{Digest, Sha256};
 #[derive(Clone, Debug)]
 pub struct Network {
     shape: Shape,
+    clip: f32,
     flat: Vec<f32>,
 }
 
 impl Network {
-    /// From flat weights in the layout of [`Shape`].
+    /// From flat weights in the layout of [`Shape`], trained with normalised observations cut to ± `clip`.
     ///
     /// # Errors
-    /// Where the policy itself would refuse them: wrong length, not finite, no width.
-    pub fn new(shape: Shape, flat: Vec<f32>) -> Result<Self, PolicyError> {
-        Policy::new(shape.clone()).load(&flat)?;
-        Ok(Self { shape, flat })
+    /// Where the policy itself would refuse them: wrong length, not finite, no width, no clip.
+    pub fn new(shape: Shape, clip: f32, flat: Vec<f32>) -> Result<Self, PolicyError> {
+        Policy::check_clip(clip)?;
+        Policy::new(shape.clone(), clip).load(&flat)?;
+        Ok(Self { shape, clip, flat })
+    }
+
+    /// What normalised observations are cut to, ±.
+    pub fn clip(&self) -> f32 {
+        self.clip
     }
 
     /// Widths of its hidden layers.
@@ -55,7 +62,7 @@ impl Network {
 
     /// The action of one observation, by this project's own inference.
     pub fn action(&self, observation: &[f32; INPUTS]) -> [f32; OUTPUTS] {
-        let mut policy = Policy::new(self.shape.clone());
+        let mut policy = Policy::new(self.shape.clone(), self.clip);
         policy.load(&self.flat).expect("checked when it was made");
         let mut action = [0.0; OUTPUTS];
         policy.means(observation, 1, &mut action);
@@ -91,10 +98,13 @@ mod tests {
     #[test]
     fn weights_that_the_policy_refuses_are_not_exported() {
         let shape = Shape::new(&[4]);
-        let error = Network::new(shape.clone(), vec![1.0; 3]).unwrap_err();
+        let error = Network::new(shape.clone(), 5.0, vec![1.0; 3]).unwrap_err();
         assert!(matches!(error, PolicyError::Length { found: 3, .. }));
         let mut flat = vec![1.0; shape.len()];
         flat[200] = f32::NAN;
-        assert!(Network::new(shape, flat).is_err());
+        assert!(Network::new(shape.clone(), 5.0, flat).is_err());
+        let flat = vec![1.0; shape.len()];
+        let error = Network::new(shape, f32::NAN, flat).unwrap_err();
+        assert!(matches!(error, PolicyError::Clip { .. }));
     }
 }

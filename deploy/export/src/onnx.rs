@@ -4,7 +4,7 @@
 //! runtime and compares. Normalisation and clipping are inside, exploration is not: the action is the mean.
 //!
 //! ```text
-//! observation ─ Sub mean ─ Mul inverse deviation ─ Clip ±5 ─ (Gemm ─ Elu)… ─ Gemm ─ action
+//! observation ─ Sub mean ─ Mul inverse deviation ─ Clip ─ (Gemm ─ Elu)… ─ Gemm ─ action
 //! ```
 
 mod message;
@@ -14,7 +14,7 @@ use message::{
     AttributeProto, Dimension, FLOAT, GraphProto, ModelProto, NodeProto, OperatorSetIdProto,
     StringStringEntryProto, TensorProto, TensorShapeProto, TensorType, TypeProto, ValueInfoProto,
 };
-use policy::{CLIP, INPUTS, OUTPUTS};
+use policy::{INPUTS, OUTPUTS};
 use prost::Message;
 
 /// Name of the model's input.
@@ -57,8 +57,8 @@ fn graph(network: &Network) -> GraphProto {
     };
     graph.constant("mean", &[INPUTS], network.mean());
     graph.constant("inverse_deviation", &[INPUTS], network.inverse_deviation());
-    graph.constant("least", &[], &[-CLIP]);
-    graph.constant("greatest", &[], &[CLIP]);
+    graph.constant("least", &[], &[-network.clip()]);
+    graph.constant("greatest", &[], &[network.clip()]);
     graph.node("Sub", &[INPUT, "mean"], "centred");
     graph.node("Mul", &["centred", "inverse_deviation"], "scaled");
     graph.node("Clip", &["scaled", "least", "greatest"], "normalised");
@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn the_graph_is_the_formula_in_order() {
         let shape = Shape::new(&[3]);
-        let network = Network::new(shape.clone(), vec![0.5; shape.len()]).unwrap();
+        let network = Network::new(shape.clone(), 2.5, vec![0.5; shape.len()]).unwrap();
         let bytes = model(&network, &[("run", "walk")]);
         let model = ModelProto::decode(bytes.as_slice()).unwrap();
         let graph = model.graph.unwrap();
@@ -147,6 +147,15 @@ mod tests {
             before = node.output[0].clone();
         }
         assert_eq!(before, OUTPUT);
+        let limits: Vec<f32> = ["least", "greatest"]
+            .iter()
+            .map(|name| {
+                let held = graph.initializer.iter().find(|held| held.name == *name);
+                let bytes = held.unwrap().raw_data.as_slice().try_into().unwrap();
+                f32::from_le_bytes(bytes)
+            })
+            .collect();
+        assert_eq!(limits, [-2.5, 2.5]);
         assert_eq!(model.opset_import[0].version, 17);
         assert_eq!(model.metadata_props[0].value, "walk");
     }

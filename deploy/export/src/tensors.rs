@@ -10,7 +10,7 @@ use policy::{INPUTS, OUTPUTS};
 use safetensors::SafeTensorError;
 use safetensors::tensor::{Dtype, TensorView};
 
-/// Mean and inverse deviation of observations, exploration, and the layers as `actor.0`, `actor.2`, ….
+/// Mean, inverse deviation and clip of observations, exploration, and the layers as `actor.0`, `actor.2`, ….
 ///
 /// # Errors
 /// When the format's own library refuses, which it has no reason to.
@@ -26,6 +26,7 @@ pub fn file(network: &Network) -> Result<Vec<u8>, SafeTensorError> {
         &[INPUTS],
         network.inverse_deviation(),
     );
+    add("observation.clip", &[1], &[network.clip()]);
     add("exploration.sigma", &[OUTPUTS], network.sigma());
     for (index, (place, weights, bias)) in network.layers().enumerate() {
         let (inputs, outputs) = (place.inputs, place.outputs);
@@ -65,7 +66,7 @@ mod tests {
     fn layers_are_transposed_and_nothing_is_lost() {
         let shape = Shape::new(&[2]);
         let flat: Vec<f32> = (0..shape.len()).map(|i| 1.0 + i as f32).collect();
-        let network = Network::new(shape, flat.clone()).unwrap();
+        let network = Network::new(shape, 2.5, flat.clone()).unwrap();
         let bytes = file(&network).unwrap();
         let read = SafeTensors::deserialize(&bytes).unwrap();
         let values = |name: &str| -> Vec<f32> {
@@ -81,9 +82,10 @@ mod tests {
         assert_eq!(first[1], flat[189]); // in 1, out 0
         assert_eq!(values("actor.0.bias"), flat[187 + 164..187 + 166]);
         assert_eq!(values("observation.mean"), flat[..82]);
+        assert_eq!(values("observation.clip"), [2.5]);
         assert_eq!(values("exploration.sigma"), flat[164..187]);
         let numbers: usize = read.tensors().iter().map(|(_, t)| t.data().len() / 4).sum();
-        assert_eq!(numbers, flat.len());
+        assert_eq!(numbers, flat.len() + 1); // and the clip
         assert_eq!(file(&network).unwrap(), bytes, "the same bytes every time");
     }
 }

@@ -11,13 +11,13 @@ fn a_snapshot_means_the_same_to_both_readers() {
     let shape = Shape::new(82, &[256, 128, 64], 23, Activation::Elu);
     let weights = orthogonal(&shape, 2.0_f32.sqrt(), 0.5, &mut rng);
     let rows: Vec<f32> = (0..100 * 82).map(|_| rng.random_range(-3.0..3.0)).collect();
-    let mut normalizer = Normalizer::new(vec![0.01; 82], 5.0);
+    let mut normalizer = Normalizer::new(vec![0.01; 82], 1.5);
     normalizer.update(&rows[..50 * 82]);
     let scaling = normalizer.scaling();
     let mut flat = Vec::new();
     snapshot::export(&scaling, &[0.3; 23], &weights, &mut flat);
 
-    let mut policy = policy::Policy::new(policy::Shape::new(&[256, 128, 64]));
+    let mut policy = policy::Policy::new(policy::Shape::new(&[256, 128, 64]), scaling.clip);
     policy.load(&flat).expect("a snapshot of this shape");
     let mut theirs = vec![0.0; 100 * 23];
     policy.means(&rows, 100, &mut theirs);

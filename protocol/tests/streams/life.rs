@@ -12,7 +12,7 @@ use protocol::{
 use crate::harness::{DEADLINE, LAYOUT, Run, assignment, command, eventually, say, until_released};
 
 fn header(version: u64) -> WeightsHeader {
-    WeightsHeader::new(version, WeightsOrder::Collect, &[], LAYOUT, true)
+    WeightsHeader::new(version, WeightsOrder::Collect, &[], 5.0, LAYOUT, true)
 }
 
 /// What the other processes do.

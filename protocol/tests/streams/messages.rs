@@ -27,6 +27,10 @@ fn a_rollout_written_in_place_is_read_in_place() {
     let header = RolloutHeader {
         learner: 9,
         policy_version: 12,
+        physics_seconds: 0.5,
+        observation_seconds: 0.25,
+        inference_seconds: 0.75,
+        waiting_seconds: 2.0,
         collect_seconds: 1.5,
         ..RolloutHeader::default()
     };
@@ -121,7 +125,8 @@ fn a_late_actor_gets_the_newest_weights_and_only_those() {
     let run = Run::new();
     let (learner, actor) = (run.join("learner"), run.join("actor-0"));
     let publisher = WeightsPublisher::new(&learner, 4).unwrap();
-    let header = |version| WeightsHeader::new(version, WeightsOrder::Collect, &[8], LAYOUT, true);
+    let header =
+        |version| WeightsHeader::new(version, WeightsOrder::Collect, &[8], 5.0, LAYOUT, true);
     publisher.broadcast(header(1), &[1.0; 4]).unwrap();
     publisher.broadcast(header(2), &[2.0; 4]).unwrap();
 
@@ -149,7 +154,7 @@ fn weights_in_use_do_not_hinder_newer_ones() {
     let publisher = WeightsPublisher::new(&learner, 1).unwrap();
     let subscriber = WeightsSubscriber::new(&actor).unwrap();
     let broadcast = |version| {
-        let header = WeightsHeader::new(version, WeightsOrder::Collect, &[], LAYOUT, false);
+        let header = WeightsHeader::new(version, WeightsOrder::Collect, &[], 5.0, LAYOUT, false);
         publisher.broadcast(header, &[version as f32]).unwrap();
     };
     broadcast(1);
@@ -181,7 +186,7 @@ fn weights_outlive_more_broadcasts_than_memory_is_reserved_for() {
     let publisher = WeightsPublisher::new(&learner, 2).unwrap();
     let subscriber = WeightsSubscriber::new(&actor).unwrap();
     for version in 0..100 {
-        let header = WeightsHeader::new(version, WeightsOrder::Collect, &[], LAYOUT, false);
+        let header = WeightsHeader::new(version, WeightsOrder::Collect, &[], 5.0, LAYOUT, false);
         publisher.broadcast(header, &[version as f32; 2]).unwrap();
     }
     let weights = subscriber.newest().unwrap().unwrap();
@@ -285,7 +290,7 @@ fn two_runs_never_meet() {
     let (learner, actor) = (here.join("learner"), there.join("actor-0"));
     let publisher = WeightsPublisher::new(&learner, 1).unwrap();
     let subscriber = WeightsSubscriber::new(&actor).unwrap();
-    let header = WeightsHeader::new(1, WeightsOrder::Collect, &[], LAYOUT, true);
+    let header = WeightsHeader::new(1, WeightsOrder::Collect, &[], 5.0, LAYOUT, true);
     publisher.broadcast(header, &[1.0]).unwrap();
     learner.tick();
     assert_eq!(

@@ -74,7 +74,7 @@ fn weights_of_another_shape_are_refused() {
     let run = Run::new();
     let learner = run.join("learner");
     let publisher = WeightsPublisher::new(&learner, 3).unwrap();
-    let header = WeightsHeader::new(0, WeightsOrder::Collect, &[], LAYOUT, true);
+    let header = WeightsHeader::new(0, WeightsOrder::Collect, &[], 5.0, LAYOUT, true);
     let error = publisher.broadcast(header, &[0.0; 2]).unwrap_err();
     let PortError::Length { expected, got, .. } = error else {
         panic!("{error}");

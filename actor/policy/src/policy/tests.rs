@@ -38,7 +38,11 @@ fn random_observations(n: usize, seed: u64) -> Vec<f32> {
 }
 
 fn loaded(shape: &Shape, flat: &[f32]) -> Policy {
-    let mut policy = Policy::new(shape.clone());
+    clipping(shape, flat, 5.0)
+}
+
+fn clipping(shape: &Shape, flat: &[f32], clip: f32) -> Policy {
+    let mut policy = Policy::new(shape.clone(), clip);
     policy.load(flat).unwrap();
     policy
 }
@@ -251,8 +255,36 @@ fn a_nan_observation_spoils_its_own_row_only() {
 #[test]
 fn without_weights_the_mean_action_is_zero() {
     let out = means(
-        &mut Policy::new(Shape::new(&[512, 256, 128])),
+        &mut Policy::new(Shape::new(&[512, 256, 128]), 5.0),
         &random_observations(2, 13),
     );
     assert!(out.iter().all(|&action| action == 0.0));
+}
+
+#[test]
+fn observations_are_cut_to_the_clip_that_the_weights_were_trained_with() {
+    // A linear policy whose action 2 is the first observation, normalised by mean 0 and deviation 1.
+    let shape = Shape::new(&[]);
+    let mut flat = vec![0.0; shape.len()];
+    flat[INVERSE_DEVIATION].fill(1.0);
+    flat[SIGMA].fill(1.0);
+    let layer = shape.layers().next().unwrap();
+    flat[layer.weights.start + 2] = 1.0;
+    let mut observation = [0.0; INPUTS];
+    for (clip, seen, expected) in [
+        (1.5, 100.0, 1.5),
+        (1.5, -100.0, -1.5),
+        (1.5, 1.25, 1.25),
+        (5.0, 100.0, 5.0),
+        (20.0, 7.0, 7.0), // 5 is nobody's limit but the default's
+    ] {
+        let mut policy = clipping(&shape, &flat, clip);
+        assert_eq!(policy.clip(), clip);
+        observation[0] = seen;
+        assert_eq!(means(&mut policy, &observation)[2], expected);
+    }
+    for clip in [0.0, -5.0, f32::INFINITY, f32::NAN] {
+        let refused = Policy::check_clip(clip).unwrap_err().to_string();
+        assert!(refused.contains(&format!("{clip}")), "{refused}");
+    }
 }

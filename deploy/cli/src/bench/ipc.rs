@@ -21,6 +21,8 @@ const DEADLINE: Duration = Duration::from_secs(10);
 
 /// Hidden layers of the policy that is adopted.
 const HIDDEN: [usize; 3] = [256, 128, 64];
+/// What it cuts observations to; of no influence on the time.
+const CLIP: f32 = 5.0;
 
 /// 1·(1082·242 + 164) numbers of four bytes: a message of 1.05 million bytes.
 const MEBIBYTE: RolloutLayout = RolloutLayout {
@@ -102,7 +104,7 @@ fn adoption(wires: &Wires, count: usize) -> Result<Vec<Duration>> {
     let shape = Shape::new(&HIDDEN);
     // The time does not depend on the values, which only have to be finite and σ positive.
     let flat = vec![0.01; shape.len()];
-    let mut policy = Policy::new(shape);
+    let mut policy = Policy::new(shape, CLIP);
     exchange(wires, count, &flat, move |_, weights| {
         policy.load(weights).context("loading the weights")?;
         Ok(Instant::now())
@@ -135,8 +137,14 @@ fn exchange(
         for version in 0..count as u64 {
             // Lets the reader fall asleep; unequal, so as not to keep step with the system's clock.
             std::thread::sleep(Duration::from_micros(100 + version % 7 * 30));
-            let header =
-                WeightsHeader::new(version, WeightsOrder::Collect, &HIDDEN, MEBIBYTE, true);
+            let header = WeightsHeader::new(
+                version,
+                WeightsOrder::Collect,
+                &HIDDEN,
+                CLIP,
+                MEBIBYTE,
+                true,
+            );
             let sent = Instant::now();
             publisher.broadcast(header, flat)?;
             let Ok(moment) = moments.recv_timeout(DEADLINE) else {

@@ -5,6 +5,7 @@
 
 use std::time::Instant;
 
+use amp::PolicyConfig;
 use anyhow::{Context, Result, ensure};
 use policy::{Policy, Shape};
 use rand::{RngExt, SeedableRng};
@@ -99,7 +100,7 @@ impl SimBench {
         for weight in &mut flat[sigma..] {
             *weight = 0.05 * (2.0 * random.random::<f32>() - 1.0);
         }
-        let mut policy = Policy::new(shape);
+        let mut policy = Policy::new(shape, PolicyConfig::default().observation_clip);
         policy.load(&flat).context("loading random weights")?;
         Ok(policy)
     }

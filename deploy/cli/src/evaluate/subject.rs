@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use amp::LearningConfig;
+use amp::{LearningConfig, PolicyConfig};
 use anyhow::{Context, Result};
 use motion::MotionConfig;
 use policy::{Policy, Shape};
 use run::motion::Learned;
-use run::{Checkpoint, Config};
+use run::{Checkpoint, Config, FleetConfig};
 use sim::{Starts, TaskConfig};
 
 use super::reference::Reference;
@@ -62,7 +62,7 @@ impl Kept {
         Ok(Self {
             iteration: checkpoint.iteration,
             learning: LearningConfig {
-                policy: config.section("policy")?,
+                policy: config.checked("policy", PolicyConfig::validate)?,
                 exploration: config.section("exploration")?,
                 ppo: config.section("ppo")?,
                 discriminator: config.section("discriminator")?,
@@ -92,9 +92,25 @@ impl Kept {
         Ok((Shape::new(&self.learning.policy.hidden), flat))
     }
 
-    /// The task that it was trained for.
+    /// The task that it was trained for, as the curriculum had it when this checkpoint was written.
     pub(crate) fn task(&self) -> Result<TaskConfig> {
-        Ok(self.config.checked("task", TaskConfig::validate)?)
+        let task: TaskConfig = self.config.checked("task", TaskConfig::validate)?;
+        Ok(task.at(self.samples()? as f64))
+    }
+
+    /// Samples that it has learnt from. A shipped policy does not say; iterations of full batches have made it.
+    fn samples(&self) -> Result<u64> {
+        #[derive(serde::Deserialize)]
+        struct Counted {
+            samples: u64,
+        }
+        if let Ok(shell) = self.part("shell.json") {
+            let counted: Counted = serde_json::from_slice(shell)
+                .with_context(|| format!("reading shell.json of {}", self.path.display()))?;
+            return Ok(counted.samples);
+        }
+        let fleet: FleetConfig = self.config.checked("fleet", FleetConfig::validate)?;
+        Ok(self.iteration * (fleet.environments * fleet.steps) as u64)
     }
 
     /// The configuration that it was trained under.
@@ -143,7 +159,7 @@ impl Subject {
     /// The policy of the checkpoint, ready to act.
     pub(crate) fn policy(&self) -> Result<Policy> {
         let (shape, flat) = self.kept.weights()?;
-        let mut policy = Policy::new(shape);
+        let mut policy = Policy::new(shape, self.kept.learning.policy.observation_clip);
         policy
             .load(&flat)
             .with_context(|| format!("loading policy.bin of {}", self.kept.path.display()))?;

@@ -21,7 +21,7 @@ fn the_example_is_what_the_network_does() {
     flat[policy::SIGMA].fill(1.0);
     let first = flat.len() - g1::ACTION;
     flat[first + 3] = 0.75;
-    let network = Network::new(shape, flat).unwrap();
+    let network = Network::new(shape, 2.5, flat).unwrap();
     let description = Description::new(
         &network,
         Origin::default(),
@@ -29,6 +29,7 @@ fn the_example_is_what_the_network_does() {
         Value::Null,
         Value::Null,
     );
+    assert_eq!(description.network.clip, 2.5);
     assert_eq!(description.example.action[3], 0.75);
     assert_eq!(description.example.observation[10], 0.5);
     let text = serde_json::to_string(&description).unwrap();
