@@ -10,6 +10,7 @@ MuJoCo steps at 200 Hz, the policy at 50 Hz, as in training. Figures are defined
 
 import argparse
 import json
+import math
 import os
 import subprocess
 import sys
@@ -17,15 +18,38 @@ import time
 from pathlib import Path
 
 from transfer import pictures
+from transfer.table import table
 
 SPEEDS = [0.5, 1.0, 1.5, 2.0]
+
+
+def speed(text):
+    """A forward command."""
+    number = float(text)
+    if not math.isfinite(number):
+        raise ValueError
+    return [number, 0.0, 0.0]
+
+
+def command(text):
+    """Forward and leftward velocity, m/s, and yaw rate, rad/s."""
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != 3 or not all(map(math.isfinite, numbers)):
+        raise argparse.ArgumentTypeError(f"{text!r}: give three numbers, as in 0.5,0,0.5")
+    return numbers
 
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("policy", help="folder that `ampco export` wrote")
-    parser.add_argument("--speed", type=float, action="append", help="forward command, m/s; may be repeated "
-                        "(default: 0.5, 1.0, 1.5, 2.0)")
+    parser.add_argument("--speed", type=speed, action="append", dest="commands", metavar="VX",
+                        help="forward command, m/s; may be repeated (default: 0.5, 1.0, 1.5, 2.0)")
+    parser.add_argument("--command", type=command, action="append", dest="commands", metavar="VX,VY,WZ",
+                        help="forward and leftward velocity, m/s, and yaw rate, rad/s; may be repeated, beside --speed "
+                        "too; one that begins with a minus as in --command=-0.5,0,0")
     parser.add_argument("--episodes", type=int, default=32, help="episodes per command (default: 32)")
     parser.add_argument("--seconds", type=float, default=20.0, help="length of an episode (default: 20)")
     parser.add_argument("--seed", type=int, default=1)
@@ -33,36 +57,29 @@ def arguments():
     parser.add_argument("--ampco", default="target/release/ampco", help="the program (default: target/release/ampco)")
     parser.add_argument("--json", metavar="FILE", help="write all figures")
     parser.add_argument("--figure", metavar="FILE", help="draw Figure 5, as PNG or SVG by the name")
-    parser.add_argument("--strip", metavar="FILE", help="draw a strip of images at the first speed, as PNG")
-    parser.add_argument("--view", action="store_true", help="open MuJoCo's viewer at the first speed; no figures")
+    parser.add_argument("--strip", metavar="FILE", help="draw a strip of images at the first command, as PNG")
+    parser.add_argument("--view", action="store_true", help="open MuJoCo's viewer at the first command; no figures")
     given = parser.parse_args()
-    if given.episodes < 1 or not given.seconds > 0:
-        parser.error("--episodes and --seconds must be above zero")
+    if given.episodes < 1:
+        parser.error(f"--episodes {given.episodes}: give at least 1")
+    if not 0.02 <= given.seconds <= 3600:
+        parser.error(f"--seconds {given.seconds}: give 0.02 to 3600")
+    given.commands = given.commands or [speed(number) for number in SPEEDS]
     return given
 
 
-def in_rapier(given, speeds, randomize):
+def in_rapier(given, randomize):
     """The same figures by `ampco evaluate`."""
     from transfer.episodes import figures
 
-    command = [given.ampco, "evaluate", given.run, "--json", "--episodes", str(given.episodes),
+    call = [given.ampco, "evaluate", given.run, "--json", "--episodes", str(given.episodes),
                "--seconds", str(given.seconds), "--seed", str(given.seed)]
-    command += [word for speed in speeds for word in ("--command", f"{speed},0,0")]
-    command += ["--randomize"] if randomize else []
-    done = subprocess.run(command, capture_output=True, text=True)
+    call += [word for numbers in given.commands for word in ("--command", ",".join(map(str, numbers)))]
+    call += ["--randomize"] if randomize else []
+    done = subprocess.run(call, capture_output=True, text=True)
     if done.returncode != 0:
-        sys.exit(f"sim2sim: {' '.join(command)}: {done.stderr.strip()}")
+        sys.exit(f"sim2sim: {' '.join(call)}: {done.stderr.strip()}")
     return [figures(row["command"], row) for row in json.loads(done.stdout)]
-
-
-def table(label, rows):
-    print(f"\n{label}\n  asked  survival    rmse   norm.err   energy   velocity")
-    print("    m/s         %     m/s          %   J/step        m/s")
-    for row in rows:
-        error = row["normalized_error"]
-        error = "-" if error is None else f"{100 * error:.1f}"
-        print(f"  {row['command'][0]:5.2f}  {100 * row['survival']:8.1f}  {row['seconds_survived']:7.2f}  {row['rmse']:6.3f}  {error:>9}"
-              f"  {row['energy_per_step_j']:7.2f}  {row['velocity'][0]:9.2f}", flush=True)
 
 
 def view(model, policy, robot):
@@ -96,15 +113,14 @@ def main():
     except ExportError as problem:
         sys.exit(f"sim2sim: {problem}")
     model = mujoco.MjModel.from_xml_path(str(Path(given.policy) / "g1.xml"))
-    speeds = given.speed or SPEEDS
 
-    def asked(speed):
+    def first():
         robot = Robot(model, policy)
-        robot.command[0] = speed
+        robot.command[:] = given.commands[0]
         return robot
 
     if given.view:
-        view(model, policy, asked(speeds[0]))
+        view(model, policy, first())
         return
     print(f"{policy.title()}: {given.episodes} episodes of {given.seconds:g} s per command, "
           f"MuJoCo {mujoco.__version__}", flush=True)
@@ -113,22 +129,22 @@ def main():
     series = []
     for randomize, suffix in ((False, ""), (True, "_randomized")):
         words = "Table I" if randomize else "nominal"
-        rows = [walk(model, policy, [speed, 0.0, 0.0], given.episodes, given.seconds, randomize, given.seed)
-                for speed in speeds]
+        rows = [walk(model, policy, numbers, given.episodes, given.seconds, randomize, given.seed)
+                for numbers in given.commands]
         result[f"mujoco{suffix}"] = rows
         series.append((f"MuJoCo, {words}", "s" if randomize else "o", rows))
-        table(f"MuJoCo, {words}", rows)
+        print("\n" + table(f"MuJoCo, {words}", rows), flush=True)
         if given.run:
-            rows = in_rapier(given, speeds, randomize)
+            rows = in_rapier(given, randomize)
             result[f"rapier{suffix}"] = rows
             series.append((f"rapier, {words}", "D" if randomize else "^", rows))
-            table(f"rapier, {words}", rows)
+            print("\n" + table(f"rapier, {words}", rows), flush=True)
     if given.json:
         replace(given.json, json.dumps(result, indent=1) + "\n")
     if given.figure:
         pictures.figure(given.figure, policy.title(), series)
     if given.strip:
-        fell_at = pictures.strip(given.strip, asked(speeds[0]), policy, min(given.seconds, 4.0), 9)
+        fell_at = pictures.strip(given.strip, first(), policy, min(given.seconds, 4.0), 9)
         print(f"\n{given.strip}: " + (f"fell after {fell_at:.2f} s" if fell_at is not None else "on its feet"))
 
 

@@ -47,11 +47,73 @@ pub fn files(results: &Results) -> Vec<File> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::{State, sample};
+    use crate::results::{Judged, State, sample};
 
     fn text(files: &[File], name: &str) -> String {
         let file = files.iter().find(|file| file.name == name);
         file.expect("a file of this name").text.clone()
+    }
+
+    /// Columns that a row of HTML has.
+    fn columns(row: &str) -> usize {
+        let cells = row.split("<t").skip(1);
+        cells
+            .filter(|cell| {
+                cell.starts_with('d') || cell.starts_with("h ") || cell.starts_with("h>")
+            })
+            .map(|cell| match cell.split_once("colspan=") {
+                Some((_, span)) => span[..1].parse().unwrap(),
+                None => 1,
+            })
+            .sum()
+    }
+
+    #[test]
+    fn every_number_has_a_heading_of_its_own() {
+        let mut results = sample::results(&[
+            ("ampco", &[1.0, 1.2]),
+            ("amp-0.5", &[2.0, 2.4]),
+            ("ampco-without-aig", &[3.0, 3.2]),
+            ("mine", &[3.0, 3.2]),
+        ]);
+        results.runs[0].judged.push(Judged {
+            command: [0.0, 0.0, 1.0],
+            survival: 1.0,
+            rmse: 0.25,
+            rmse_yaw_rate: 0.875,
+            energy_j: 1_000.0,
+            gait: "still: 0.13 of 1.00 rad/s".to_owned(),
+        });
+        let files = files(&results);
+        let page = text(&files, "report.html");
+        let mut found = 0;
+        for table in page.split("<table>").skip(1) {
+            let table = table.split("</table>").next().unwrap();
+            let (head, body) = table.split_once("</thead>").unwrap();
+            // In a head of two rows the second divides cells of the first.
+            let Some(first) = head.split("<tr>").nth(1) else {
+                continue;
+            };
+            let expected = columns(first);
+            for row in body.split("<tr>").skip(1) {
+                assert_eq!(columns(row), expected, "{head}\n{row}");
+                found += 1;
+            }
+        }
+        assert!(found > 20, "{found} rows");
+        assert!(page.contains("0.875") && page.contains("of the yaw rate, rad/s"));
+        for file in files.iter().filter(|file| file.name.ends_with(".csv")) {
+            let cells = |line: &str| {
+                // Commas within quotes divide nothing.
+                let outside = line.split('"').step_by(2);
+                outside.map(|part| part.matches(',').count()).sum::<usize>()
+            };
+            let mut lines = file.text.lines();
+            let heading = lines.next().unwrap();
+            for line in lines {
+                assert_eq!(cells(line), cells(heading), "{}: {line}", file.name);
+            }
+        }
     }
 
     #[test]

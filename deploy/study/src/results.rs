@@ -51,8 +51,10 @@ pub struct Judged {
     pub command: [f64; 3],
     /// Share of episodes without a fall.
     pub survival: f64,
-    /// m/s.
+    /// Planar, m/s.
     pub rmse: f64,
+    /// Of the yaw rate, rad/s.
+    pub rmse_yaw_rate: f64,
     /// J per 1,000 control steps.
     pub energy_j: f64,
     /// The gait in words.

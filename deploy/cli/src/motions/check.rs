@@ -180,7 +180,7 @@ fn show(
         clips.len(),
         total / 60.0
     )?;
-    writeln!(out, "      m/s        s   share")?;
+    writeln!(out, "      m/s        s    share")?;
     let is_rare: Vec<bool> = (0..seconds.len()).map(|i| rare.contains(&i)).collect();
     let strata: Vec<usize> = (0..seconds.len()).collect();
     // Rare strata in a row are a line: most of them hold nothing.

@@ -7,7 +7,7 @@ use motion::Quality;
 /// Heading of [`line()`].
 pub(super) const HEADING: &str = "\
 clip                              s    m/s    slip  below  duty  flight  peak  limits
-                                              m/s     mm                motor";
+                                               m/s     mm               motor";
 
 /// A clip's figures: duration, speed, slip of standing feet (median), deepest sole, share of time that
 /// a foot stands, share of flight, greatest joint speed over its motor's, joints beyond limits.
@@ -45,5 +45,19 @@ mod tests {
         );
         assert_eq!(short.chars().count(), long.chars().count());
         assert!(short.contains(" 1.00 "), "{short}");
+        // Every number ends where its heading does, and every unit under the heading that it belongs to.
+        let ends = |line: &str| -> Vec<usize> {
+            let letters: Vec<char> = line.chars().chain([' ']).collect();
+            let ends = |i: &usize| letters[*i] != ' ' && letters[i + 1] == ' ';
+            (0..letters.len() - 1).filter(ends).collect()
+        };
+        let lines: Vec<Vec<usize>> = HEADING.lines().map(ends).collect();
+        assert_eq!(lines[0][1..], ends(&short)[1..], "{HEADING}\n{short}");
+        // Slip in metres a second, depth in millimetres, the peak in shares of the motor's.
+        assert_eq!(
+            lines[1],
+            [3, 4, 7].map(|column| lines[0][column]),
+            "{HEADING}"
+        );
     }
 }

@@ -17,6 +17,7 @@ pub(super) fn judged(results: &Results) -> String {
                 Cell::text(format!("{x}, {y}, {yaw}")),
                 Cell::text(format!("{:.0} %", 100.0 * judged.survival)),
                 Cell::text(Metric::Rmse.written(judged.rmse)),
+                Cell::text(format!("{:.3}", judged.rmse_yaw_rate)),
                 Cell::text(Metric::Energy.written(judged.energy_j)),
                 Cell::text(&judged.gait),
             ]
@@ -30,6 +31,7 @@ pub(super) fn judged(results: &Results) -> String {
         "command",
         "survival",
         "RMSE, m/s",
+        "of the yaw rate, rad/s",
         "energy, J",
         "gait",
     ]);
