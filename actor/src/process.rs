@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use protocol::{
-    Domain, Node, RolloutHeader, RolloutPublisher, SendOutcome, Shutdown, TICK, Weights,
+    Domain, Node, RolloutHeader, RolloutPublisher, SendOutcome, Shutdown, TICK, TermMean, Weights,
     WeightsHeader, WeightsOrder, WeightsSubscriber,
 };
 use run::Folder;
@@ -92,6 +92,7 @@ pub fn run(run_dir: &Path, index: u32) -> Result<()> {
                 inference_seconds: timing.inference,
                 waiting_seconds: waited.as_secs_f32(),
                 collect_seconds: started.elapsed().as_secs_f32(),
+                terms: TermMean::of(worker.take_terms()),
                 ..RolloutHeader::default()
             },
         )?;

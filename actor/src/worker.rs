@@ -137,10 +137,8 @@ impl Worker {
         flat: &[f32],
     ) -> Result<()> {
         let samples = header.samples as f64;
-        if config.task.curriculum.is_some() {
-            self.fleet.set_task(config.task.at(samples));
-        }
-        if config.randomization.grows() {
+        self.fleet.set_task(config.task.at(samples));
+        if config.randomization.strength.moves() {
             self.fleet
                 .set_randomization(config.randomization.at(samples));
         }
@@ -161,6 +159,11 @@ impl Worker {
             &mut self.generator,
             rollout,
         )
+    }
+
+    /// Means of the task's terms since they were last taken.
+    pub(crate) fn take_terms(&mut self) -> Vec<(&'static str, f32)> {
+        self.fleet.take_terms()
     }
 
     /// Steps thrown away because something was not finite.
@@ -205,7 +208,8 @@ mod tests {
     use std::time::Duration;
 
     use protocol::RolloutLayout;
-    use sim::{CurriculumConfig, RandomizationConfig, Starts, TaskConfig};
+    use sim::{RandomizationConfig, StartConfig, Starts, TaskConfig};
+    use vocabulary::Ramp;
 
     use super::*;
 
@@ -235,7 +239,7 @@ mod tests {
         assert_eq!(worker.policy.clip(), 8.0);
     }
 
-    /// A task whose kernel goes from 2 to 4, and a Table I that grows, between 1,000 and 3,000 samples.
+    /// Starts from motion that go from all to half, and a Table I that grows, between 1,000 and 3,000 samples.
     fn growing() -> ActorConfig {
         ActorConfig {
             seed: 1,
@@ -244,18 +248,14 @@ mod tests {
                 steps: 8,
             },
             task: TaskConfig {
-                kernel: 2.0,
-                curriculum: Some(CurriculumConfig {
-                    from_samples: 1e3,
-                    to_samples: 3e3,
-                    kernel: Some(4.0),
-                    ..CurriculumConfig::default()
-                }),
+                start: StartConfig {
+                    reference_share: Ramp::moving(1.0, 0.5, [1e3, 3e3]),
+                    ..StartConfig::default()
+                },
                 ..TaskConfig::default()
             },
             randomization: RandomizationConfig {
-                from_samples: 1e3,
-                to_samples: 3e3,
+                strength: Ramp::moving(0.0, 1.0, [1e3, 3e3]),
                 ..RandomizationConfig::default()
             },
             starts: Starts::default(),
@@ -283,12 +283,18 @@ mod tests {
         // begins anew there is as far as one that was there before.
         for version in [1_000, 100, 10] {
             let mut worker = begin(&header(0, 0));
-            assert_eq!(worker.fleet.task().kernel, 2.0);
+            assert_eq!(
+                worker.fleet.task().start.reference_share,
+                Ramp::Constant(1.0)
+            );
             worker
                 .adopt(&config, &header(version, 2_000), &flat)
                 .unwrap();
             for worker in [&worker, &begin(&header(version, 2_000))] {
-                assert_eq!(worker.fleet.task().kernel, 3.0);
+                assert_eq!(
+                    worker.fleet.task().start.reference_share,
+                    Ramp::Constant(0.75)
+                );
                 // Half of Table I's 0.5 kg.
                 assert_eq!(worker.fleet.randomization().mass_range, [-0.25, 0.25]);
             }

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import onnxruntime
 
-VERSION = 1
+VERSION = 2
 
 
 class ExportError(Exception):

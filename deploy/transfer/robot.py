@@ -125,7 +125,11 @@ class Robot:
     def has_fallen(self, task):
         """By the task's rule; a state that is no number has fallen."""
         upright = max(0.0, -self.gravity()[2])
-        return not (self.data.qpos[2] >= task["fall_height"] and upright >= task["fall_upright"])
+        if "termination" in task:
+            height, least = task["termination"]["fall"]["height"], task["termination"]["fall"]["upright"]
+        else:  # version 1 of policy.json
+            height, least = task["fall_height"], task["fall_upright"]
+        return not (self.data.qpos[2] >= height and upright >= least)
 
     def observe(self):
         """What the policy sees now, without noise (82 numbers)."""

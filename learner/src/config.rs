@@ -53,10 +53,11 @@ impl LearnerConfig {
             schedule: config.section("scheduler")?,
             experts,
             episode_steps: config
-                .given("task.episode_steps")
+                .given("task.termination.time_out.steps")
                 .and_then(|steps| steps.as_integer())
-                .context("config.toml lacks task.episode_steps; `ampco train` writes it")?
-                as f64,
+                .context(
+                    "config.toml lacks task.termination.time_out.steps; `ampco train` writes it",
+                )? as f64,
             settled: settled(&config),
             text: config.to_toml(),
         })
@@ -86,8 +87,8 @@ impl LearnerConfig {
     }
 }
 
-/// Samples at which the last schedule of `[task]` and `[randomization]` arrives; 0 where there is none. The learner knows
-/// neither section, but the way a schedule is written: it ends with `to_samples`, or with the second of `samples`.
+/// Samples at which the last ramp of `[task]` and `[randomization]` arrives; 0 where there is none. The learner knows
+/// neither section, but the way a ramp is written: it ends with the second of its `samples`.
 fn settled(config: &Config) -> f64 {
     let number = |value: &Value| {
         value
@@ -97,7 +98,6 @@ fn settled(config: &Config) -> f64 {
     let end = |(path, value): (String, Value)| {
         let (section, name) = (path.split('.').next()?, path.rsplit('.').next()?);
         match (section, name) {
-            ("task" | "randomization", "to_samples") => number(&value),
             ("task" | "randomization", "samples") => number(value.as_array()?.last()?),
             _ => None,
         }
@@ -116,15 +116,11 @@ mod tests {
     #[test]
     fn a_task_has_settled_when_its_last_schedule_arrives() {
         let of = |text: &str| settled(&Config::parse(text, "a test").unwrap());
-        assert_eq!(
-            of("[task]\nkernel = 2.0\n[exploration]\nfinal_samples = 9e9"),
-            0.0
-        );
-        let curriculum = "[task.curriculum]\nfrom_samples = 1e6\nto_samples = 3e6\nkernel = 6.0\n";
-        assert_eq!(of(curriculum), 3e6);
-        let table = "[randomization]\nto_samples = 5000000";
-        assert_eq!(of(&format!("{curriculum}{table}")), 5e6);
-        let ramp = "[task.kernel]\nfrom = 0.25\nto = 2.0\nsamples = [1e6, 4e6]";
-        assert_eq!(of(ramp), 4e6);
+        let exploration = "[exploration.sigma]\nfrom = 0.6\nto = 0.2\nsamples = [1e6, 9e9]\n";
+        assert_eq!(of(exploration), 0.0);
+        let kernel = "[task.reward.track.kernel]\nfrom = 0.25\nto = 2.0\nsamples = [1e6, 4e6]\n";
+        assert_eq!(of(&format!("{exploration}{kernel}")), 4e6);
+        let table = "[randomization.strength]\nfrom = 0\nto = 1\nsamples = [3e6, 5000000]";
+        assert_eq!(of(&format!("{kernel}{table}")), 5e6);
     }
 }

@@ -1,11 +1,13 @@
 //! What comes together for one iteration: seats in the batch, and who fills them.
 
+use std::collections::BTreeMap;
+
 use amp::Batch;
 use protocol::{Rollout, RolloutHeader};
 
 /// What came together for one iteration. Seconds are means over the rollouts, but for `collect`,
 /// which is the slowest's.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Gathered {
     pub(crate) rollouts: usize,
     pub(crate) actors: usize,
@@ -18,6 +20,8 @@ pub(crate) struct Gathered {
     pub(crate) waiting_seconds: f64,
     /// Copying rollouts to their places, all together.
     pub(crate) copy_seconds: f64,
+    /// Means of the task's terms, by name.
+    pub(crate) terms: TermMeans,
 }
 
 /// What has come together so far.
@@ -29,11 +33,29 @@ pub(crate) struct Gathering<'a> {
 }
 
 /// A place in the batch.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Seat {
     /// Whose it is; `None` is anybody's.
     pub(crate) actor: Option<u32>,
     pub(crate) taken: bool,
+    /// What the rollout that took it tells of the task's terms.
+    pub(crate) terms: TermMeans,
+}
+
+/// Means of the task's terms, by name.
+pub(crate) type TermMeans = BTreeMap<String, f64>;
+
+/// Means over rollouts of the same number of rows. In the order of the seats and not of arrival, so that the same
+/// rollouts give the same bits; a term that a rollout does not tell was not looked at there.
+pub(crate) fn means<'a>(seats: impl Iterator<Item = &'a TermMeans>) -> TermMeans {
+    let mut sums: BTreeMap<String, (f64, f64)> = BTreeMap::new();
+    for (name, mean) in seats.flatten() {
+        let (sum, rollouts) = sums.entry(name.clone()).or_default();
+        *sum += mean;
+        *rollouts += 1.0;
+    }
+    let mean = |(name, (sum, rollouts)): (String, (f64, f64))| (name, sum / rollouts);
+    sums.into_iter().map(mean).collect()
 }
 
 impl Gathered {
@@ -76,4 +98,24 @@ pub(crate) fn copy(rollout: &Rollout, batch: &mut Batch, segment: usize) {
     to.last_observations.copy_from_slice(from.last_observations);
     to.timeout_observations
         .copy_from_slice(from.timeout_observations);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn terms_are_averaged_over_the_rollouts_that_tell_them() {
+        let terms = |told: &[(&str, f64)]| -> TermMeans {
+            let owned = told.iter().map(|(name, mean)| ((*name).to_owned(), *mean));
+            owned.collect()
+        };
+        let seats = [
+            terms(&[("gate/effort", 0.5), ("reward/track", 0.25)]),
+            terms(&[("reward/track", 0.75)]),
+            terms(&[]),
+        ];
+        let expected = terms(&[("gate/effort", 0.5), ("reward/track", 0.5)]);
+        assert_eq!(means(seats.iter()), expected);
+    }
 }

@@ -9,7 +9,7 @@ use run::Folder;
 use run::journal::{self, Journal};
 use tracing::{info, warn};
 
-use crate::gathering::{Gathered, Gathering, Seat, copy};
+use crate::gathering::{self, Gathered, Gathering, Seat, TermMeans, copy};
 use crate::roster::Roster;
 
 /// How rollouts are asked for.
@@ -143,6 +143,7 @@ impl Intake {
             }
         }
         now.gathered.actors = self.roster.len();
+        now.gathered.terms = gathering::means(now.seats.iter().map(|seat| &seat.terms));
         now.gathered.average();
         Ok(Some(now.gathered))
     }
@@ -167,6 +168,7 @@ impl Intake {
         let free = |actor| Seat {
             actor,
             taken: false,
+            terms: TermMeans::new(),
         };
         if self.roster.len() == 0 {
             return vec![free(None)];
@@ -229,7 +231,8 @@ impl Intake {
         let layout = self.terms.layout;
         let fits = |seat: &Seat| !seat.taken && seat.actor.is_none_or(|own| own == header.actor);
         let mut place = now.seats.iter().position(fits);
-        if let Some(flaw) = rollout.flaw() {
+        let terms = header.terms();
+        if let Some(flaw) = rollout.flaw().or(terms.as_ref().err().copied()) {
             warn!(
                 actor = header.actor,
                 field = flaw.field,
@@ -249,6 +252,7 @@ impl Intake {
             now.seats.push(Seat {
                 actor: Some(header.actor),
                 taken: false,
+                terms: TermMeans::new(),
             });
             now.batch.add_segment(layout.steps, layout.environments);
             place = Some(now.seats.len() - 1);
@@ -258,6 +262,11 @@ impl Intake {
             return "surplus";
         };
         now.seats[place].taken = true;
+        now.seats[place].terms = terms
+            .into_iter()
+            .flatten()
+            .map(|(name, mean)| (name.to_owned(), f64::from(mean)))
+            .collect();
         let began = Instant::now();
         copy(rollout, now.batch, place);
         now.gathered.copy_seconds += began.elapsed().as_secs_f64();

@@ -197,6 +197,7 @@ impl Loop {
             task_weight: 1.0 - report.style_weight,
             episode_share: self.config.episode_share(report),
             learning: record::figures(report),
+            terms: gathered.terms.clone(),
             decision: DecisionFigures::of(guide, lines.is_scheduler_away()),
             gait: measures.into(),
             traffic: Traffic::of(

@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use crate::gait::Measures;
-use crate::gathering::Gathered;
+use crate::gathering::{Gathered, TermMeans};
 use crate::guidance::Guide;
 use crate::intake::Unused;
 
@@ -24,6 +24,9 @@ pub(crate) struct Record {
     pub(crate) episode_share: Option<f64>,
     #[serde(flatten)]
     pub(crate) learning: Map<String, Value>,
+    /// `reward/<name>`, `gate/<name>`: means of the task's terms.
+    #[serde(flatten)]
+    pub(crate) terms: TermMeans,
     #[serde(flatten)]
     pub(crate) decision: DecisionFigures,
     #[serde(flatten)]

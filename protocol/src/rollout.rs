@@ -5,6 +5,7 @@
 
 mod layout;
 mod ledger;
+mod terms;
 
 use std::fmt;
 use std::time::{Duration, Instant};
@@ -13,6 +14,7 @@ use iceoryx2::prelude::ZeroCopySend;
 
 pub use layout::{Flaw, RolloutLayout, RolloutStep, RolloutStepMut, RolloutView, RolloutViewMut};
 pub use ledger::{Entry, Ledger, Totals};
+pub use terms::{MAX_TERMS, TermMean};
 
 use crate::error::PortError;
 use crate::port::{Loan, Publisher, Received, SendOutcome, Subscriber, Wake};
@@ -51,9 +53,19 @@ pub struct RolloutHeader {
     pub waiting_seconds: f32,
     /// Wall-clock seconds from the first to the last step.
     pub collect_seconds: f32,
+    /// Means of the task's terms over all steps; read them with [`Self::terms`].
+    pub terms: [TermMean; MAX_TERMS],
 }
 
 impl RolloutHeader {
+    /// Name and mean of every term of the task that the actor looked at.
+    ///
+    /// # Errors
+    /// The first that no sound actor sends.
+    pub fn terms(&self) -> Result<Vec<(&str, f32)>, Flaw> {
+        terms::read(&self.terms)
+    }
+
     /// Sizes, if a message of `numbers` numbers has them.
     pub fn layout(&self, numbers: usize) -> Result<RolloutLayout, PortError> {
         let layout = RolloutLayout {

@@ -71,8 +71,8 @@ fn values_out_of_range_name_field_and_value() {
         &["percentile", "95"],
     );
     assert_says(
-        &refused(&["--set", "task.fall_height=high"]),
-        &["fall_height"],
+        &refused(&["--set", "task.termination.fall.height=high"]),
+        &["termination.fall.height"],
     );
 }
 

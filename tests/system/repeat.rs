@@ -22,6 +22,16 @@ fn two_runs_of_one_seed_write_the_same_metrics_and_weights() {
     };
     assert_eq!(lines("one").len(), 6);
     assert_eq!(lines("one"), lines("two"));
+    for line in lines("one") {
+        // Eq. 14 alone: one term, one gate, and what is paid is at most either.
+        let mean = |key: &str| line[key].as_f64().expect("a mean");
+        let paid = mean("task_mean");
+        assert!(paid > 0.0 && paid <= mean("reward/track") + 1e-6, "{line}");
+        assert!(paid <= mean("gate/upright") + 1e-6, "{line}");
+        let terms = line.as_object().expect("a record").keys();
+        let terms = terms.filter(|key| key.starts_with("reward/") || key.starts_with("gate/"));
+        assert_eq!(terms.count(), 2, "{line}");
+    }
     let policy = |name: &str| bytes(&runs.run(name).join("checkpoints/00000006/policy.bin"));
     assert!(policy("one") == policy("two"), "weights differ");
 }
@@ -83,9 +93,7 @@ fn stopping_and_resuming_changes_no_bit() {
     // A task that grows through all 8 iterations of 128 samples: its clock goes on where it stopped.
     let growing = [
         "--set",
-        "task.curriculum.kernel=8",
-        "--set",
-        "task.curriculum.to_samples=1024",
+        "task.reward.track.kernel={from=0.25,to=8,samples=[0,1024]}",
     ];
     let train = |name: &str, iterations: &str| {
         let arguments = ["--actors", "2", "--iterations", iterations];

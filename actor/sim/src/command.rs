@@ -1,12 +1,13 @@
 //! Commands c_t = (v*_x, v*_y, ω*): what the robot is asked to do, and for how long.
 //!
 //! Separate because commands are drawn at two moments, at a reset (where they may match the start)
-//! and every few seconds after, by the same rule.
+//! and every few seconds after, by one sampler.
 
-use crate::config::{self, Invalid, range};
 use crate::kind::{Kind, KindsConfig};
+use crate::world::CONTROL_STEP;
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
+use vocabulary::{Checked, Ramp, invalid};
 
 /// Which velocities are commanded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -14,13 +15,13 @@ use serde::{Deserialize, Serialize};
 pub struct CommandConfig {
     /// Forward velocity, m/s: least and greatest. Default 0.4 to 1.2, where the recipe began that
     /// walked; the paper gives no ranges. Ranges that contain 0 from the start taught hopping.
-    pub forward: [f32; 2],
+    pub forward: Ramp<[f32; 2]>,
     /// Leftward velocity, m/s. Default 0: the reference motion walks straight.
-    pub lateral: [f32; 2],
+    pub lateral: Ramp<[f32; 2]>,
     /// Yaw rate, rad/s. Default 0, as above.
-    pub yaw_rate: [f32; 2],
+    pub yaw_rate: Ramp<[f32; 2]>,
     /// Share of drawn commands that are zero: stand still. Default 0.
-    pub standing_share: f32,
+    pub standing_share: Ramp<f32>,
     /// Share of the others that have one part alone, forward, lateral or yaw rate, each as often.
     /// Default 0: all three at once, and hardly ever straight on, aside or on the spot.
     pub pure_share: f32,
@@ -34,66 +35,96 @@ pub struct CommandConfig {
     pub resample_seconds: [f32; 2],
     /// Share of starts from reference motion whose command is that motion's own velocity.
     /// Default 0.9, of the recipe that walked; 0.7 later in training.
-    pub matched_share: f32,
+    pub matched_share: Ramp<f32>,
     /// Robots that keep to one kind of command each, so that every kind gets its share of the samples.
     /// Default: none does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kinds: Option<KindsConfig>,
 }
 
+/// When and for whom a command is drawn. By default inside an episode, where it may be of any kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Occasion {
+    /// At the start of an episode of a robot that keeps to a kind: that kind.
+    pub kind: Option<Kind>,
+    /// At a start in motion: the velocity that it goes at, which is the command in the matched share.
+    pub motion: Option<[f32; 3]>,
+}
+
 impl Default for CommandConfig {
     fn default() -> Self {
         Self {
-            forward: [0.4, 1.2],
-            lateral: [0.0, 0.0],
-            yaw_rate: [0.0, 0.0],
-            standing_share: 0.0,
+            forward: [0.4, 1.2].into(),
+            lateral: [0.0, 0.0].into(),
+            yaw_rate: [0.0, 0.0].into(),
+            standing_share: 0.0.into(),
             pure_share: 0.0,
             least_share: 0.0,
             resample_seconds: [3.0, 10.0],
-            matched_share: 0.9,
+            matched_share: 0.9.into(),
             kinds: None,
         }
     }
 }
 
 impl CommandConfig {
-    /// Checks every field; names the first bad one, its value and a remedy.
-    pub fn validate(&self) -> Result<(), Invalid> {
-        range("command.forward", self.forward)?;
-        range("command.lateral", self.lateral)?;
-        range("command.yaw_rate", self.yaw_rate)?;
-        config::share("command.standing_share", self.standing_share)?;
-        config::share("command.pure_share", self.pure_share)?;
-        config::share("command.least_share", self.least_share)?;
-        range("command.resample_seconds", self.resample_seconds)?;
-        config::at_least(
-            "command.resample_seconds[0]",
-            self.resample_seconds[0],
-            0.02,
-        )?;
-        config::share("command.matched_share", self.matched_share)?;
+    /// Holds all that moves where it is after a number of samples.
+    pub(crate) fn set(&mut self, samples: f64) {
+        for range in [&mut self.forward, &mut self.lateral, &mut self.yaw_rate] {
+            range.set(samples);
+        }
+        self.standing_share.set(samples);
+        self.matched_share.set(samples);
+        if let Some(kinds) = &mut self.kinds {
+            kinds.set(samples);
+        }
+    }
+
+    /// Checks every field; names the first bad one.
+    pub(crate) fn validate(&self) -> Checked {
+        self.forward.check("forward", invalid::range)?;
+        self.lateral.check("lateral", invalid::range)?;
+        self.yaw_rate.check("yaw_rate", invalid::range)?;
+        self.standing_share
+            .check("standing_share", invalid::share)?;
+        invalid::share("pure_share", self.pure_share)?;
+        invalid::share("least_share", self.least_share)?;
+        invalid::range("resample_seconds", self.resample_seconds)?;
+        invalid::at_least("resample_seconds[0]", self.resample_seconds[0], 0.02)?;
+        self.matched_share.check("matched_share", invalid::share)?;
         self.kinds
             .as_ref()
             .map_or(Ok(()), |kinds| kinds.validate(self))
     }
 
-    /// A command from the ranges.
-    pub fn draw(&self, rng: &mut impl Rng) -> [f32; 3] {
+    /// A command: the one sampler, for resets and for changes inside an episode.
+    pub fn draw(&self, occasion: Occasion, rng: &mut impl Rng) -> [f32; 3] {
+        let drawn = match occasion.kind {
+            Some(kind) => kind.draw(self, rng),
+            None => self.draw_any(rng),
+        };
+        match occasion.motion {
+            Some(motion) if rng.random::<f32>() < self.matched_share.now() => motion,
+            _ => drawn,
+        }
+    }
+
+    /// A command of any kind from the ranges.
+    fn draw_any(&self, rng: &mut impl Rng) -> [f32; 3] {
         // All numbers are drawn whatever the outcome, so that a change of one share leaves the rest
         // of a run's random sequence alone.
-        let stand = rng.random::<f32>() < self.standing_share;
-        let mut command = [self.forward, self.lateral, self.yaw_rate]
-            .map(|[least, greatest]| rng.random_range(least..=greatest));
+        let stand = rng.random::<f32>() < self.standing_share.now();
+        let ranges = [self.forward, self.lateral, self.yaw_rate].map(|range| range.now());
+        let mut command = ranges.map(|[least, greatest]| rng.random_range(least..=greatest));
         if self.pure_share > 0.0 {
             let pure = rng.random::<f32>() < self.pure_share;
             let part = rng.random_range(0..command.len());
             if pure {
                 let value = match part {
                     0 if command[0] >= 0.0 => command[0],
-                    0 => self.away(command[0], self.forward),
-                    1 => self.away(command[1], self.lateral),
-                    _ => self.away(command[2], self.yaw_rate),
+                    0 => self.away(command[0], ranges[0]),
+                    1 => self.away(command[1], ranges[1]),
+                    _ => self.away(command[2], ranges[2]),
                 };
                 command = [0.0; 3];
                 command[part] = value;
@@ -109,33 +140,16 @@ impl CommandConfig {
         value + self.least_share * (end - value)
     }
 
-    /// A command for the beginning of an episode of a robot that keeps to a kind, or to none.
-    pub fn draw_of(&self, kind: Option<Kind>, rng: &mut impl Rng) -> [f32; 3] {
-        match kind {
-            Some(kind) => kind.draw(self, rng),
-            None => self.draw(rng),
-        }
-    }
-
-    /// A command for a start from motion that goes at `clip`: that velocity in the matched share.
-    pub fn draw_for_start(
-        &self,
-        kind: Option<Kind>,
-        clip: &[f32; 3],
-        rng: &mut impl Rng,
-    ) -> [f32; 3] {
-        let drawn = self.draw_of(kind, rng);
-        if rng.random::<f32>() < self.matched_share {
-            *clip
-        } else {
-            drawn
-        }
-    }
-
     /// Control steps until the next command.
     pub fn draw_interval(&self, rng: &mut impl Rng) -> u32 {
-        config::steps(self.resample_seconds, rng)
+        steps(self.resample_seconds, rng)
     }
+}
+
+/// A number of control steps for a duration drawn from a range of seconds; at least one.
+pub(crate) fn steps(seconds: [f32; 2], rng: &mut impl Rng) -> u32 {
+    let seconds = rng.random_range(seconds[0]..=seconds[1]);
+    ((seconds / CONTROL_STEP).round() as u32).max(1)
 }
 
 /// Whether an option is off.

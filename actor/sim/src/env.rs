@@ -5,15 +5,17 @@
 //! engine, beside all others ([`Bodies`]).
 
 use crate::actuator;
+use crate::command::Occasion;
+use crate::feet::Footing;
 use crate::kind::Pools;
+use crate::moment::{self, Moment};
 use crate::physics::Bodies;
 use crate::randomization::Table;
-use crate::stance::{Foot, Footing};
 use crate::start::{self, Starts};
-use crate::stray::Astray;
-use crate::task::{self, TaskConfig};
-use g1::links::{LEFT_FOOT, RIGHT_FOOT};
-use g1::{JOINTS, OBSERVATION, RobotState, kinematics, observation};
+use crate::task::TaskConfig;
+use crate::termination::stray::Astray;
+use crate::terms::Sums;
+use g1::{JOINTS, OBSERVATION, RobotState, observation};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
@@ -91,10 +93,10 @@ impl Environment {
             steps: 0,
         };
         environment.reset(setting, bodies, index);
-        if setting.task.staggered {
+        if setting.task.termination.time_out.staggered {
             environment.age = environment
                 .random
-                .random_range(0..setting.task.episode_steps);
+                .random_range(0..setting.task.termination.time_out.steps);
         }
         environment
     }
@@ -140,7 +142,7 @@ impl Environment {
             let table = &setting.table(index).rows;
             let push = table.draw_push(&mut self.random);
             bodies.push(index, push);
-            if let Some(rule) = &setting.task.stray {
+            if let Some(rule) = &setting.task.termination.stray {
                 self.astray.pushed(rule);
             }
             self.push_in = table.draw_push_interval(&mut self.random);
@@ -152,35 +154,35 @@ impl Environment {
 
     /// Looks at what a control step brought. After it an ended episode has to be left by
     /// [`Environment::proceed`].
-    pub(crate) fn judge(&mut self, setting: &Setting, bodies: &Bodies, index: usize) -> Outcome {
+    pub(crate) fn judge(
+        &mut self,
+        setting: &Setting,
+        bodies: &Bodies,
+        index: usize,
+        sums: &mut Sums,
+    ) -> Outcome {
         if !bodies.is_sound(index) {
             return self.broken();
         }
         self.state = bodies.state(index);
-        let strayed = setting
-            .task
-            .stray
-            .as_ref()
-            .is_some_and(|rule| self.astray.step(rule, &self.command, &self.state));
-        let end = if setting.task.has_fallen(&self.state) {
+        let rules = &setting.task.termination;
+        let stray = rules.stray.as_ref();
+        let strayed = stray.is_some_and(|rule| self.astray.step(rule, &self.command, &self.state));
+        let end = if rules.fall.has_fallen(&self.state) {
             Some(Cause::Fall)
         } else if strayed {
             Some(Cause::Stray)
-        } else if self.age >= setting.task.episode_steps {
+        } else if self.age >= rules.time_out.steps {
             Some(Cause::TimeOut)
         } else {
             None
         };
         let (energy, foot_forces) = bodies.work_and_forces(index);
         self.feet.step(foot_forces);
-        let long_steps = setting.task.single_stance.as_ref().map_or(1.0, |pay| {
-            let height = |foot| sole_height(&self.state, foot);
-            pay.factor(&self.command, &self.feet, height)
-        });
-        let obeys = setting.task.reward(&self.command, &self.state, energy);
+        let moment = Moment::new(&self.command, &self.state, energy, &self.feet);
         Outcome {
-            task_reward: obeys * long_steps,
-            tracking_error: task::tracking_error(&self.command, &self.state),
+            task_reward: setting.task.pay_and_tell(&moment, sums),
+            tracking_error: moment.velocity_error,
             energy,
             foot_forces,
             end,
@@ -198,7 +200,10 @@ impl Environment {
         if end.is_some() {
             self.reset(setting, bodies, index);
         } else if count_down(&mut self.command_in) {
-            self.command = setting.task.command.draw(&mut self.random);
+            self.command = setting
+                .task
+                .command
+                .draw(Occasion::default(), &mut self.random);
             self.astray = Astray::default();
             self.command_in = Some(setting.task.command.draw_interval(&mut self.random));
         }
@@ -235,21 +240,12 @@ impl Environment {
     pub(crate) fn broken(&self) -> Outcome {
         Outcome {
             task_reward: 0.0,
-            tracking_error: task::tracking_error(&self.command, &self.state),
+            tracking_error: moment::velocity_error(&self.command, &self.state),
             energy: 0.0,
             foot_forces: [0.0; 2],
             end: Some(Cause::Fault),
         }
     }
-}
-
-/// Height of the lowest corner of a sole, m.
-fn sole_height(state: &RobotState, foot: Foot) -> f32 {
-    let link = match foot {
-        Foot::Left => LEFT_FOOT,
-        Foot::Right => RIGHT_FOOT,
-    };
-    kinematics::lowest_sole_point(&kinematics::forward_state(state), link)
 }
 
 /// Counts a timer down; whether it has just run out.

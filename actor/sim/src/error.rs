@@ -1,7 +1,7 @@
 //! Why a fleet cannot be built or restored.
 
-use crate::config::Invalid;
 use crate::physics::Physics;
+use vocabulary::Invalid;
 
 /// Why a fleet cannot be built or restored.
 #[derive(Debug, thiserror::Error)]

@@ -9,7 +9,6 @@ mod saved;
 pub use out::StepOut;
 
 use crate::actuator::Gains;
-use crate::config;
 use crate::env::{Environment, Setting};
 use crate::error::SimError;
 use crate::kind::Pools;
@@ -17,6 +16,7 @@ use crate::physics::{Bodies, Exertion};
 use crate::randomization::{RandomizationConfig, Table};
 use crate::start::Starts;
 use crate::task::TaskConfig;
+use crate::terms::Sums;
 use g1::{ACTION, FEATURES, OBSERVATION, RobotState, observation};
 use nalgebra::Vector3;
 use vocabulary::{Cause, RUNNING};
@@ -33,6 +33,8 @@ pub struct Fleet {
     features: Vec<f32>,
     /// What is remembered of each environment's last step; of no influence on the future, and in no snapshot.
     last: Vec<Last>,
+    /// What the terms of the task came to since they were asked for; of no influence on the future either.
+    sums: Sums,
     faults: u64,
 }
 
@@ -88,7 +90,7 @@ impl Fleet {
         task.validate()?;
         randomization.validate()?;
         starts.validate()?;
-        config::require(
+        vocabulary::invalid::require(
             environments > 0,
             "environments",
             environments,
@@ -113,6 +115,7 @@ impl Fleet {
             observations: vec![0.0; environments * OBSERVATION],
             features: vec![0.0; environments * FEATURES],
             last: Vec::new(),
+            sums: Sums::default(),
             faults: 0,
         };
         fleet.forget_last_steps();
@@ -206,6 +209,12 @@ impl Fleet {
         }
     }
 
+    /// Mean of every reward term and gate over all robots' steps since this was last asked, by their names in metrics;
+    /// those that do not exist are not among them. Steps that broke do not count.
+    pub fn take_terms(&mut self) -> Vec<(&'static str, f32)> {
+        self.sums.take()
+    }
+
     /// Steps thrown away so far because an action or a state was not finite.
     pub fn faults(&self) -> u64 {
         self.faults
@@ -246,7 +255,7 @@ impl Fleet {
         for i in 0..n {
             let environment = &mut self.environments[i];
             let outcome = if self.acted[i] {
-                environment.judge(&self.setting, &self.bodies, i)
+                environment.judge(&self.setting, &self.bodies, i, &mut self.sums)
             } else {
                 environment.broken()
             };

@@ -6,10 +6,10 @@
 //! the other, and the other is not learnt. A robot that keeps to one kind spends all its steps on it.
 
 use crate::command::CommandConfig;
-use crate::config::{self, Invalid};
 use crate::start::Starts;
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
+use vocabulary::{Checked, Ramp, invalid};
 
 /// What a command asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,23 +53,27 @@ impl Kind {
 
     /// A command of this kind from the ranges.
     pub(crate) fn draw(self, ranges: &CommandConfig, rng: &mut impl Rng) -> [f32; 3] {
-        let [slowest, fastest] = ranges.forward;
+        let ([slowest, fastest], lateral) = (ranges.forward.now(), ranges.lateral.now());
+        let yaw_rates = ranges.yaw_rate.now();
         let forward = match self {
             Self::Forward => [slowest.max(0.0), fastest],
             Self::Backward => [slowest, fastest.min(0.0)],
-            _ => ranges.forward,
+            _ => [slowest, fastest],
         };
-        // A curriculum may have a range that leaves nothing of this kind yet: then its near end.
+        // A range that moves may be one that leaves nothing of this kind yet: then its near end.
         let forward = [forward[0].min(fastest), forward[1].max(slowest)];
-        let [vx, vy, yaw_rate] = [forward, ranges.lateral, ranges.yaw_rate]
+        let [vx, vy, yaw_rate] = [forward, lateral, yaw_rates]
             .map(|[least, greatest]| rng.random_range(least..=greatest));
-        let ahead = ranges.kinds.as_ref().map_or(0.0, |kinds| kinds.approach);
+        let ahead = ranges
+            .kinds
+            .as_ref()
+            .map_or(0.0, |kinds| kinds.approach.now());
         match self {
             Self::Standing => [0.0; 3],
             Self::Forward => [vx, 0.0, 0.0],
             Self::Backward => [ranges.away(vx, forward), 0.0, 0.0],
-            Self::Lateral => [ahead, ranges.away(vy, ranges.lateral), 0.0],
-            Self::Turning => [ahead, 0.0, ranges.away(yaw_rate, ranges.yaw_rate)],
+            Self::Lateral => [ahead, ranges.away(vy, lateral), 0.0],
+            Self::Turning => [ahead, 0.0, ranges.away(yaw_rate, yaw_rates)],
             Self::Mixed => [vx, vy, yaw_rate],
         }
     }
@@ -92,42 +96,55 @@ pub struct KindsConfig {
     pub turning: f32,
     /// All three parts at once.
     pub mixed: f32,
-    /// Forward velocity that lateral and turning commands have besides, m/s; a curriculum takes it away, or beyond 0 to
+    /// Forward velocity that lateral and turning commands have besides, m/s; a ramp takes it away, or beyond 0 to
     /// slants backward. Between walking on, stepping aside and walking back lie walks on a slant, between them and
     /// standing only falls. Default 0.
-    pub approach: f32,
+    pub approach: Ramp<f32>,
 }
 
 impl KindsConfig {
+    /// Holds all that moves where it is after a number of samples.
+    pub(crate) fn set(&mut self, samples: f64) {
+        self.approach.set(samples);
+    }
+
     /// Checks every field against the ranges of commands; names the first bad one and a remedy.
-    pub(crate) fn validate(&self, ranges: &CommandConfig) -> Result<(), Invalid> {
+    pub(crate) fn validate(&self, ranges: &CommandConfig) -> Checked {
         let fields = [
-            "command.kinds.standing",
-            "command.kinds.forward",
-            "command.kinds.backward",
-            "command.kinds.lateral",
-            "command.kinds.turning",
-            "command.kinds.mixed",
+            "kinds.standing",
+            "kinds.forward",
+            "kinds.backward",
+            "kinds.lateral",
+            "kinds.turning",
+            "kinds.mixed",
         ];
         for (field, weight) in fields.into_iter().zip(self.weights()) {
-            config::at_least(field, weight, 0.0)?;
+            invalid::at_least(field, weight, 0.0)?;
         }
-        check_approach("command.kinds.approach", self.approach)?;
-        config::require(
+        self.approach.check("kinds.approach", |path, approach| {
+            invalid::require(
+                (-3.0..=3.0).contains(&approach),
+                path,
+                approach,
+                "give a velocity from -3 to 3 m/s",
+            )
+        })?;
+        invalid::require(
             self.weights().iter().sum::<f32>() > 0.0,
-            "command.kinds",
+            "kinds",
             self.weights(),
             "give at least one kind a share, or leave the table out",
         )?;
-        config::require(
-            self.forward == 0.0 || ranges.forward[1] > 0.0,
-            "command.kinds.forward",
+        let [slowest, fastest] = ranges.forward.now();
+        invalid::require(
+            self.forward == 0.0 || fastest > 0.0,
+            "kinds.forward",
             self.forward,
             "let command.forward reach above 0, or give 0",
         )?;
-        config::require(
-            self.backward == 0.0 || ranges.forward[0] < 0.0,
-            "command.kinds.backward",
+        invalid::require(
+            self.backward == 0.0 || slowest < 0.0,
+            "kinds.backward",
             self.backward,
             "let command.forward begin below 0, or give 0",
         )
@@ -155,16 +172,6 @@ impl KindsConfig {
         });
         found.map_or(Kind::Mixed, |(kind, _)| kind)
     }
-}
-
-/// Refuses a forward velocity of [`KindsConfig::approach`] that nobody goes at.
-pub(crate) fn check_approach(field: &'static str, approach: f32) -> Result<(), Invalid> {
-    config::require(
-        (-3.0..=3.0).contains(&approach),
-        field,
-        approach,
-        "give a velocity from -3 to 3 m/s",
-    )
 }
 
 /// Frames of reference motion by the kind of their command.

@@ -9,53 +9,63 @@
 //! | N environments in a fixed order: step, save, restore | [`fleet`] |
 //! | one episode's life | `env` |
 //! | memory for a step of a fleet | [`rows`] |
-//! | the task reward (Eq. 14), falls, time-outs | [`task`] |
-//! | a task that grows with the samples | [`curriculum`] |
+//! | the `[task]` section, a table of contents | [`task`] |
+//! | what a step came to, as rewards see it | [`moment`] |
+//! | reward terms (Eq. 14 is one), their mean | [`reward`] |
+//! | factors of the reward (Eq. 14 has one) | [`gate`] |
+//! | what a table of terms is | `terms` |
+//! | which feet stand, and since when | [`feet`] |
+//! | what ends an episode: a fall, the time, straying | [`termination`] |
 //! | commands c_t | [`command`] |
 //! | kinds of command, each with its share of the robots | [`kind`] |
 //! | where episodes begin | [`start`] |
 //! | domain randomisation (Table I) | [`randomization`] |
-//! | straying from the command ends an episode | [`stray`] |
-//! | standing on one foot at a time pays | [`stance`] |
 //! | motors: position control, torque limits, energy (III-F) | [`actuator`] |
 //! | the two engines behind one seam | [`physics`] |
 //! | a robot in rapier, state in and out | [`world`], [`model`] |
 //! | rapier's settings | [`engine`] |
+//!
+//! A value of the task that moves with the samples is a [`vocabulary::Ramp`].
 #![forbid(unsafe_code)]
 
 pub mod actuator;
 pub mod command;
-pub mod config;
-pub mod curriculum;
 pub mod engine;
 mod env;
 pub mod error;
+pub mod feet;
 pub mod fleet;
+pub mod gate;
 pub mod kind;
 pub mod model;
+pub mod moment;
 pub mod physics;
 pub mod randomization;
+pub mod reward;
 pub mod rows;
-pub mod stance;
 pub mod start;
-pub mod stray;
 pub mod task;
+pub mod termination;
+mod terms;
 pub mod world;
 
 pub use actuator::Gains;
 pub use command::CommandConfig;
-pub use config::Invalid;
-pub use curriculum::CurriculumConfig;
 pub use engine::Engine;
 pub use error::SimError;
 pub use fleet::{Fleet, LastStep, StepOut};
+pub use gate::GateConfig;
 pub use kind::{Kind, KindsConfig};
 pub use model::Variation;
+pub use moment::Moment;
 pub use physics::Physics;
 pub use randomization::RandomizationConfig;
+pub use reward::RewardConfig;
 pub use rows::StepRows;
-pub use stance::SingleStanceConfig;
 pub use start::{StartConfig, Starts};
-pub use stray::StrayConfig;
 pub use task::TaskConfig;
+pub use termination::TerminationConfig;
+pub use termination::fall::FallConfig;
+pub use termination::stray::StrayConfig;
+pub use termination::time_out::TimeOutConfig;
 pub use world::{Exertion, World};

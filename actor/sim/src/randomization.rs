@@ -6,22 +6,22 @@
 
 mod noise;
 
-use crate::config::{self, Invalid, range};
+use crate::command;
 use crate::model::Variation;
 use nalgebra::Vector3;
 use noise::SensorNoise;
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
+use vocabulary::invalid::{self, range};
+use vocabulary::{Checked, Ramp};
 
 /// The `[randomization]` section. Ranges are those of Table I; all rows are on, as in the paper.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RandomizationConfig {
-    /// Samples of the whole group until the table begins to count. Default 0, from the start: robots
-    /// that cannot walk yet learn slower on one that is never the same.
-    pub from_samples: f64,
-    /// Samples at which it counts in full; in between, ranges grow in a straight line. Default 0.
-    pub to_samples: f64,
+    /// How much the table counts: its ranges lie so much of the way between nothing (friction: 1) and themselves. Default
+    /// 1, from the start. Robots that cannot walk yet learn slower on one that is never the same: a ramp from 0 waits.
+    pub strength: Ramp<f32>,
     /// Share of robots that the table leaves alone. Default 0. Where noise is all that a policy has met,
     /// it may stand still without: the noise had set it going.
     pub plain_share: f32,
@@ -81,8 +81,7 @@ pub const ROWS: [&str; 9] = [
 impl Default for RandomizationConfig {
     fn default() -> Self {
         Self {
-            from_samples: 0.0,
-            to_samples: 0.0,
+            strength: 1.0.into(),
             plain_share: 0.0,
             mass_variation: true,
             mass_range: [-0.5, 0.5],
@@ -146,18 +145,18 @@ impl RandomizationConfig {
     }
 
     /// Checks every field; names the first bad one, its value and a remedy.
-    pub fn validate(&self) -> Result<(), Invalid> {
-        config::way("from_samples", [self.from_samples, self.to_samples])?;
-        config::share("plain_share", self.plain_share)?;
+    pub fn validate(&self) -> Checked {
+        self.strength.check("strength", invalid::share)?;
+        invalid::share("plain_share", self.plain_share)?;
         range("mass_range", self.mass_range)?;
         // The torso weighs 7.8 kg and has to keep a positive mass.
-        config::at_least("mass_range[0]", self.mass_range[0], -7.0)?;
+        invalid::at_least("mass_range[0]", self.mass_range[0], -7.0)?;
         range("friction_range", self.friction_range)?;
-        config::at_least("friction_range[0]", self.friction_range[0], 0.0)?;
+        invalid::at_least("friction_range[0]", self.friction_range[0], 0.0)?;
         range("com_range", self.com_range)?;
         range("impulse_range", self.impulse_range)?;
         range("impulse_seconds", self.impulse_seconds)?;
-        config::at_least("impulse_seconds[0]", self.impulse_seconds[0], 0.02)?;
+        invalid::at_least("impulse_seconds[0]", self.impulse_seconds[0], 0.02)?;
         range("linear_velocity_range", self.linear_velocity_range)?;
         range("angular_velocity_range", self.angular_velocity_range)?;
         range("gravity_range", self.gravity_range)?;
@@ -165,13 +164,11 @@ impl RandomizationConfig {
         range("joint_velocity_range", self.joint_velocity_range)
     }
 
-    /// The table after a number of samples of the whole group: ranges between nothing (friction: 1) and
-    /// themselves.
+    /// The table after a number of samples that the learner has used, at full strength of its own: with the ranges that
+    /// count then.
+    #[must_use]
     pub fn at(&self, samples: f64) -> Self {
-        if !self.grows() {
-            return self.clone();
-        }
-        let part = config::progress([self.from_samples, self.to_samples], samples);
+        let part = self.strength.at(samples);
         if part == 0.0 {
             return Self::none();
         }
@@ -180,6 +177,7 @@ impl RandomizationConfig {
             range.map(|end| nothing * (1.0 - part) + end * part)
         };
         Self {
+            strength: 1.0.into(),
             mass_range: grown(self.mass_range, 0.0),
             friction_range: grown(self.friction_range, Variation::NOMINAL.friction),
             com_range: grown(self.com_range, 0.0),
@@ -191,11 +189,6 @@ impl RandomizationConfig {
             joint_velocity_range: grown(self.joint_velocity_range, 0.0),
             ..self.clone()
         }
-    }
-
-    /// Whether the table changes with the samples.
-    pub fn grows(&self) -> bool {
-        self.to_samples > 0.0
     }
 
     /// Whether the table leaves a robot alone. Spread evenly over the robots' numbers (by the golden
@@ -237,7 +230,7 @@ impl RandomizationConfig {
     /// Control steps until the next push; none when pushes are off.
     pub fn draw_push_interval(&self, rng: &mut impl Rng) -> Option<u32> {
         self.impulse
-            .then(|| config::steps(self.impulse_seconds, rng))
+            .then(|| command::steps(self.impulse_seconds, rng))
     }
 }
 

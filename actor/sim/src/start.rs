@@ -3,12 +3,12 @@
 //! Separate because reference-state initialisation is a choice of its own: most samples of early
 //! training lie near where episodes begin.
 
-use crate::command::CommandConfig;
-use crate::config::{self, Invalid};
+use crate::command::{CommandConfig, Occasion};
 use crate::kind::{Kind, Pools};
 use g1::{JOINT_TABLE, RobotState, kinematics};
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
+use vocabulary::{Checked, Ramp, invalid};
 
 /// How starts are drawn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub struct StartConfig {
     /// Share of episodes that begin in a frame of reference motion, the rest standing. Default 1,
     /// of the recipe that walked (the AMP papers use 0.85).
-    pub reference_share: f32,
+    pub reference_share: Ramp<f32>,
     /// Least clearance of the soles at the start, m: a lower frame is lifted to it, a frame in
     /// flight stays where it is. Default 0.005.
     pub lift: f32,
@@ -29,7 +29,7 @@ pub struct StartConfig {
 impl Default for StartConfig {
     fn default() -> Self {
         Self {
-            reference_share: 1.0,
+            reference_share: 1.0.into(),
             lift: 0.005,
             position_noise: 0.02,
             velocity_noise: 0.1,
@@ -38,12 +38,18 @@ impl Default for StartConfig {
 }
 
 impl StartConfig {
-    /// Checks every field; names the first bad one, its value and a remedy.
-    pub fn validate(&self) -> Result<(), Invalid> {
-        config::share("start.reference_share", self.reference_share)?;
-        config::at_least("start.lift", self.lift, 0.0)?;
-        config::at_least("start.position_noise", self.position_noise, 0.0)?;
-        config::at_least("start.velocity_noise", self.velocity_noise, 0.0)
+    /// Holds all that moves where it is after a number of samples.
+    pub(crate) fn set(&mut self, samples: f64) {
+        self.reference_share.set(samples);
+    }
+
+    /// Checks every field; names the first bad one.
+    pub(crate) fn validate(&self) -> Checked {
+        self.reference_share
+            .check("reference_share", invalid::share)?;
+        invalid::at_least("lift", self.lift, 0.0)?;
+        invalid::at_least("position_noise", self.position_noise, 0.0)?;
+        invalid::at_least("velocity_noise", self.velocity_noise, 0.0)
     }
 }
 
@@ -75,9 +81,9 @@ impl FromIterator<(RobotState, [f32; 3], f32)> for Starts {
 
 impl Starts {
     /// Checks that the three lists belong together.
-    pub fn validate(&self) -> Result<(), Invalid> {
+    pub fn validate(&self) -> Checked {
         let frames = self.states.len();
-        config::require(
+        invalid::require(
             self.commands.len() == frames && self.cumulative_weights.len() == frames,
             "starts",
             (frames, self.commands.len(), self.cumulative_weights.len()),
@@ -86,7 +92,7 @@ impl Starts {
         let mut before = 0.0;
         for (i, &weight) in self.cumulative_weights.iter().enumerate() {
             let sound = weight.is_finite() && weight >= before && self.states[i].is_finite();
-            config::require(
+            invalid::require(
                 sound && self.commands[i].iter().all(|x| x.is_finite()),
                 "starts",
                 i,
@@ -94,7 +100,7 @@ impl Starts {
             )?;
             before = weight;
         }
-        config::require(
+        invalid::require(
             frames == 0 || before > 0.0,
             "starts.cumulative_weights",
             before,
@@ -128,7 +134,7 @@ pub(crate) fn draw(
     commands: &CommandConfig,
     rng: &mut impl Rng,
 ) -> Beginning {
-    let from_motion = rng.random::<f32>() < start.reference_share;
+    let from_motion = rng.random::<f32>() < start.reference_share.now();
     let frame = match kind {
         Some((kind, pools)) => pools.draw(kind, rng),
         None => starts.draw(rng),
@@ -137,11 +143,12 @@ pub(crate) fn draw(
     let (mut state, command, fits) = match frame.filter(|_| from_motion) {
         Some(frame) => {
             let clip = &starts.commands[frame];
-            let command = commands.draw_for_start(kind, clip, rng);
+            let motion = Some(*clip);
+            let command = commands.draw(Occasion { kind, motion }, rng);
             (starts.states[frame], command, command == *clip)
         }
         None => {
-            let command = commands.draw_of(kind, rng);
+            let command = commands.draw(Occasion { kind, motion: None }, rng);
             (RobotState::standing(), command, false)
         }
     };

@@ -2,18 +2,24 @@
 
 use sim::{
     CommandConfig, Fleet, Kind, KindsConfig, Physics, RandomizationConfig, Starts, StepRows,
-    TaskConfig,
+    TaskConfig, TerminationConfig, TimeOutConfig,
 };
 
 #[test]
 fn every_episode_of_a_robot_begins_with_its_kind() {
     let task = TaskConfig {
         physics: Physics::Batched,
-        episode_steps: 3,
+        termination: TerminationConfig {
+            time_out: TimeOutConfig {
+                steps: 3,
+                ..TimeOutConfig::default()
+            },
+            ..TerminationConfig::default()
+        },
         command: CommandConfig {
-            forward: [-0.5, 1.0],
-            lateral: [-0.4, 0.4],
-            matched_share: 0.5,
+            forward: [-0.5, 1.0].into(),
+            lateral: [-0.4, 0.4].into(),
+            matched_share: 0.5.into(),
             kinds: Some(KindsConfig {
                 standing: 1.0,
                 forward: 2.0,

@@ -6,7 +6,8 @@
 use g1::{JOINTS, OBSERVATION, RobotState, state};
 use serde_json::Value;
 use sim::{
-    CommandConfig, Fleet, Physics, RandomizationConfig, StartConfig, Starts, StepRows, TaskConfig,
+    CommandConfig, FallConfig, Fleet, Physics, RandomizationConfig, StartConfig, Starts, StepRows,
+    TaskConfig, TerminationConfig, TimeOutConfig,
 };
 
 const ENGINES: [Physics; 2] = [Physics::Rapier, Physics::Batched];
@@ -37,17 +38,25 @@ fn placed(physics: Physics, flight: &Value) -> Fleet {
     let command = numbers(&flight["command"]);
     let task = TaskConfig {
         physics,
-        fall_height: 0.0,
-        fall_upright: -1.0,
-        staggered: false,
+        termination: TerminationConfig {
+            fall: FallConfig {
+                height: 0.0,
+                upright: -1.0,
+            },
+            time_out: TimeOutConfig {
+                staggered: false,
+                ..TimeOutConfig::default()
+            },
+            ..TerminationConfig::default()
+        },
         start: StartConfig {
-            reference_share: 1.0,
+            reference_share: 1.0.into(),
             lift: 0.0,
             position_noise: 0.0,
             velocity_noise: 0.0,
         },
         command: CommandConfig {
-            matched_share: 1.0,
+            matched_share: 1.0.into(),
             ..CommandConfig::default()
         },
         ..TaskConfig::default()

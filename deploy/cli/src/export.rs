@@ -185,19 +185,18 @@ mod tests {
     }
 
     #[test]
-    fn the_task_is_the_one_that_the_curriculum_had_come_to() {
+    fn the_task_is_the_one_that_its_ramps_had_come_to() {
         let folder = tempfile::tempdir().unwrap();
-        // `walk` has 4.01 million samples behind it: past the end of its curriculum, whose kernel is 4.
-        let subject = shipped_with(
-            folder.path(),
-            "to_samples = 2100000.0",
-            "to_samples = 2.1e6",
-        );
-        assert_eq!(subject.unwrap().task.kernel, 4.0);
-        let later = shipped_with(folder.path(), "to_samples = 2100000.0", "to_samples = 1e12");
+        // `walk` has 4.01 million samples behind it: past the end of its ramp, where the kernel is 4.
+        let kernel = |instead| {
+            let samples = "samples = [1500000.0, 2100000.0]\nto = 4.0";
+            let subject = shipped_with(folder.path(), samples, instead).unwrap();
+            subject.task.reward.track.unwrap().kernel.now()
+        };
+        assert_eq!(kernel("samples = [1.5e6, 2.1e6]\nto = 4.0"), 4.0);
         // A millionth of the way from 2 to 4.
-        let kernel = later.unwrap().task.kernel;
-        assert!(kernel > 2.0 && kernel < 2.001, "{kernel}");
+        let later = kernel("samples = [0.0, 4.01e12]\nto = 4.0");
+        assert!(later > 2.0 && later < 2.001, "{later}");
     }
 
     #[test]

@@ -139,6 +139,17 @@ pub(crate) fn ends(line: &Value) -> Option<String> {
     Some(format!("episodes ended: {}", counts?.join(", ")))
 }
 
+/// What the terms of the task came to, by name; `None` where a line does not say.
+pub(crate) fn terms(line: &Value) -> Option<String> {
+    let told = line.as_object()?.iter().filter_map(|(key, value)| {
+        let named = key.starts_with("reward/") || key.starts_with("gate/");
+        let mean = value.as_f64().filter(|_| named)?;
+        Some(format!("{key} {mean:.3}"))
+    });
+    let told: Vec<String> = told.collect();
+    (!told.is_empty()).then(|| format!("task: {}", told.join(", ")))
+}
+
 /// The newest figures and the pace of the last iterations.
 #[derive(Debug, Default)]
 pub(crate) struct Pace {

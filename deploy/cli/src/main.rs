@@ -41,7 +41,7 @@ Examples:
   ampco train --minutes 20 --run walk             twenty minutes, in runs/walk
   ampco train --run walk --resume --minutes 20    twenty more, from the last checkpoint
   ampco train --preset amp-0.5 --set seed=7       another method, another seed
-  ampco train --set task.kernel=2.0               any key of the configuration
+  ampco train --set task.reward.track.kernel=2.0  any key of the configuration
   ampco stages athlete                            nine runs in a row: every direction, and a run
   ampco status                                    the newest run: how it is going
   ampco actor --run walk                          lend another core to a running group

@@ -165,15 +165,37 @@ mod tests {
     }
 
     #[test]
+    fn keys_of_older_files_are_refused_with_their_new_spelling() {
+        for (old, now) in run::config::moved() {
+            let mut config = Config::default();
+            config.set(&format!("{old}=1")).unwrap();
+            let said = format!("{:#}", resolve(&mut config).unwrap_err());
+            assert!(said.contains(&format!("as in {now}")), "{said}");
+            // The new spelling is one, and changes what the run does.
+            let mut config = Config::default();
+            config.set(&now.replacen(" = ", "=", 1)).unwrap();
+            resolve(&mut config).unwrap();
+            let mut defaults = Config::default();
+            resolve(&mut defaults).unwrap();
+            assert!(difference(&config, &defaults).is_some(), "{now}");
+        }
+        let said = complaint("[task.curriculum]\nkernel = 4.0");
+        assert!(
+            said.starts_with("my.toml: unknown key `curriculum`"),
+            "{said}"
+        );
+    }
+
+    #[test]
     fn values_out_of_range_are_refused_with_their_origin() {
         for (section, line, mentioned) in [
             ("run", "minutes = -1.0", "minutes"),
             ("fleet", "environments = 0", "environments"),
-            ("task", "kernel = -1.0", "kernel"),
+            ("task", "reward.track.kernel = -1.0", "reward.track.kernel"),
             ("randomization", "mass_range = [1.0, -1.0]", "mass_range"),
             ("motion", "clips = []", "clips"),
             ("policy", "hidden = []", "hidden"),
-            ("exploration", "initial_sigma = 0.0", "initial_sigma"),
+            ("exploration", "sigma = 0.0", "sigma"),
             ("ppo", "epochs = 0", "epochs"),
             (
                 "discriminator",

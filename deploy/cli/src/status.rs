@@ -103,6 +103,7 @@ fn describe(folder: &Folder, status: &Value) -> Result<String> {
         }),
         None => "no iteration yet".to_owned(),
     });
+    lines.extend(figures::terms(&status["metrics"]));
     lines.extend(figures::ends(&status["metrics"]));
     let timing = Figures::read(&status["metrics"]).and_then(|figures| figures.timing.split());
     lines.extend(timing.map(|split| format!("time: {split}")));
@@ -139,7 +140,8 @@ mod tests {
         );
 
         let record = json!({ "iteration": 7, "samples": 70, "phase": 1, "gait": "walk", "timing": {}, "termination/fall": 2,
-            "termination/time_out": 1, "termination/stray": 9, "termination/fault": 0 });
+            "termination/time_out": 1, "termination/stray": 9, "termination/fault": 0,
+            "reward/track": 0.25, "gate/upright": 0.99 });
         run::Metrics::open(&folder.metrics_path())
             .unwrap()
             .append(&record)
@@ -164,6 +166,10 @@ mod tests {
             "{words}"
         );
         assert!(words.contains("1 checkpoint, the newest"), "{words}");
+        assert!(
+            words.contains("task: gate/upright 0.990, reward/track 0.250"),
+            "{words}"
+        );
         assert!(
             words.contains("episodes ended: fall 2, time-out 1, stray 9, fault 0"),
             "{words}"

@@ -15,7 +15,7 @@ use crate::onnx;
 /// What `format` says.
 pub const FORMAT: &str = "ampco policy";
 /// What `version` says; a reader refuses a greater one.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// The whole file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

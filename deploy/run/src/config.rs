@@ -15,9 +15,11 @@ use toml::{Table, Value};
 use crate::{assignment, nearest, replace};
 
 mod error;
+mod moved;
 mod tables;
 
 pub use error::ConfigError;
+pub use moved::moved;
 use tables::{collect, mark, merge_tables};
 
 /// A configuration: what was given, over the defaults that each section's owner declares.
@@ -178,6 +180,15 @@ impl Config {
     /// The error for a section that its owner refuses; the origin is that of the key it mentions.
     pub fn refuse(&self, section: &str, problem: impl Display) -> ConfigError {
         let problem = problem.to_string();
+        if let Some((path, _)) = problem.split_once(" = ")
+            && let Some(origin) = self.origin(&format!("{section}.{path}"))
+        {
+            return ConfigError::Refused {
+                origin: origin.to_owned(),
+                section: section.to_owned(),
+                problem,
+            };
+        }
         let words: Vec<&str> = problem
             .split(|c: char| !(c.is_alphanumeric() || c == '_'))
             .collect();
@@ -235,7 +246,8 @@ impl Config {
                 origin: self.origin_of(section, &key),
                 section: section.to_owned(),
                 value: self.value_text(section, &key),
-                remedy: nearest::remedy(names[0], &names[1..]),
+                remedy: moved::remedy(section, &key)
+                    .unwrap_or_else(|| nearest::remedy(names[0], &names[1..])),
                 key,
             };
         }

@@ -77,12 +77,7 @@ const TABLE: &[(&str, Rule, &[&str])] = &[
     (
         "exploration",
         WIDTH,
-        &["initial_sigma", "waist_factor", "arm_factor"],
-    ),
-    (
-        "exploration",
-        Free,
-        &["final_sigma", "hold_samples", "final_samples"],
+        &["sigma", "waist_factor", "arm_factor"],
     ),
     ("exploration", Free, &["min_sigma", "max_sigma"]),
     (
@@ -103,13 +98,7 @@ const TABLE: &[(&str, Rule, &[&str])] = &[
     (
         "ppo",
         Free,
-        &[
-            "learning_rate",
-            "schedule",
-            "kl_target",
-            "kl_settle",
-            "kl_band",
-        ],
+        &["learning_rate", "schedule", "kl_target", "kl_band"],
     ),
     (
         "ppo",
@@ -124,12 +113,7 @@ const TABLE: &[(&str, Rule, &[&str])] = &[
     (
         "ppo",
         Free,
-        &[
-            "mirrored_fade",
-            "critic_first",
-            "symmetry_weight",
-            "symmetry_share",
-        ],
+        &["critic_first", "symmetry_weight", "symmetry_share"],
     ),
     ("ppo", Free, &["threads"]),
     ("discriminator", Fixed(SHAPE), &["frames", "hidden"]),
@@ -317,7 +301,7 @@ mod tests {
     #[test]
     fn first_widths_count_only_where_a_schedule_draws_on_them() {
         for (kind, free) in [("scheduled", true), ("learned", false)] {
-            let before = format!("[exploration]\nkind = \"{kind}\"\ninitial_sigma = 0.6");
+            let before = format!("[exploration]\nkind = \"{kind}\"\nsigma = 0.6");
             let after = before.replace("0.6", "0.5");
             assert_eq!(outcome(&before, &after, false).is_ok(), free, "{kind}");
         }

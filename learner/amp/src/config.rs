@@ -9,19 +9,10 @@ mod ppo;
 
 pub use discriminator::{DiscriminatorConfig, Floors};
 pub use policy::{ExplorationConfig, ExplorationKind, PolicyConfig};
-pub use ppo::{AdvantageNormalization, KlSettle, PpoConfig, RateSchedule};
+pub use ppo::{AdvantageNormalization, PpoConfig, RateSchedule};
 
-/// A value that learning cannot work with.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("`{field}` = {value}: {remedy}")]
-pub struct ConfigError {
-    /// Name of the field.
-    pub field: &'static str,
-    /// Its value.
-    pub value: String,
-    /// What is allowed.
-    pub remedy: &'static str,
-}
+use std::fmt::Debug;
+use vocabulary::{Invalid, Ramp};
 
 /// All sections of the learner.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -50,37 +41,35 @@ impl LearningConfig {
 }
 
 /// The first field that breaks its condition.
-struct Check(Result<(), ConfigError>);
+struct Check(Result<(), Invalid>);
 
 impl Check {
-    fn that(
-        self,
-        holds: bool,
-        field: &'static str,
-        value: impl ToString,
-        remedy: &'static str,
-    ) -> Self {
+    fn that(self, holds: bool, path: &str, value: impl Debug, remedy: &str) -> Self {
         if self.0.is_err() || holds {
             return self;
         }
-        Self(Err(ConfigError {
-            field,
-            value: value.to_string(),
-            remedy,
-        }))
+        Self(Err(Invalid::new(path, value, remedy)))
     }
 
-    fn positive(self, field: &'static str, value: f32) -> Self {
+    /// Both ends of what may move.
+    fn ramp(self, path: &str, ramp: &Ramp<f32>, check: fn(Self, &str, f32) -> Self) -> Self {
+        let checked = self
+            .0
+            .and_then(|()| ramp.check(path, |path, value| check(Self(Ok(())), path, value).0));
+        Self(checked)
+    }
+
+    fn positive(self, field: &str, value: f32) -> Self {
         let holds = value > 0.0 && value.is_finite();
         self.that(holds, field, value, "use a finite number above 0")
     }
 
-    fn not_negative(self, field: &'static str, value: f32) -> Self {
+    fn not_negative(self, field: &str, value: f32) -> Self {
         let holds = value >= 0.0 && value.is_finite();
         self.that(holds, field, value, "use a finite number, 0 or above")
     }
 
-    fn share(self, field: &'static str, value: f32) -> Self {
+    fn share(self, field: &str, value: f32) -> Self {
         self.that(
             (0.0..=1.0).contains(&value),
             field,
@@ -89,7 +78,7 @@ impl Check {
         )
     }
 
-    fn count(self, field: &'static str, value: usize, most: usize) -> Self {
+    fn count(self, field: &str, value: usize, most: usize) -> Self {
         self.that(
             (1..=most).contains(&value),
             field,
@@ -99,15 +88,10 @@ impl Check {
     }
 
     /// Broadcast weights name their hidden layers in six places.
-    fn layers(self, field: &'static str, widths: &[usize]) -> Self {
+    fn layers(self, field: &str, widths: &[usize]) -> Self {
         let holds = (1..=6).contains(&widths.len())
             && widths.iter().all(|width| (1..=4096).contains(width));
-        self.that(
-            holds,
-            field,
-            format!("{widths:?}"),
-            "use 1 to 6 layers of 1 to 4096 units",
-        )
+        self.that(holds, field, widths, "use 1 to 6 layers of 1 to 4096 units")
     }
 }
 
@@ -143,11 +127,11 @@ mod tests {
     #[test]
     fn a_bad_value_is_named_with_its_remedy() {
         let mut config = LearningConfig::default();
-        config.ppo.mirrored_share = 1.5;
+        config.ppo.mirrored_share = 1.5.into();
         let error = config.ppo.validate().expect_err("1.5 is no share");
         assert_eq!(
             error.to_string(),
-            "`mirrored_share` = 1.5: use a share from 0 to 1"
+            "mirrored_share = 1.5 is not usable: use a share from 0 to 1"
         );
         assert!(config.validate().is_err());
         config.ppo = PpoConfig {
@@ -155,12 +139,12 @@ mod tests {
             ..Default::default()
         };
         assert_eq!(
-            config.ppo.validate().expect_err("NaN").field,
+            config.ppo.validate().expect_err("NaN").path,
             "learning_rate"
         );
         config.policy.hidden.clear();
         assert_eq!(
-            config.policy.validate().expect_err("no layer").field,
+            config.policy.validate().expect_err("no layer").path,
             "hidden"
         );
     }

@@ -46,7 +46,7 @@ pub enum LearningError {
         section: &'static str,
         /// What is wrong.
         #[source]
-        source: crate::ConfigError,
+        source: vocabulary::Invalid,
     },
     /// The robot's tables contradict the dimensions.
     #[error("robot: {0}")]

@@ -2,12 +2,11 @@
 
 use crate::config::{ExplorationConfig, ExplorationKind};
 use crate::robot::JointGroup;
-use crate::schedule;
 
 /// Standard deviation σ of each joint's action after `samples`.
 ///
-/// Scheduled: the legs' initial σ until `hold_samples`, then a straight line of log σ to the final one at
-/// `final_samples`; waist and arms a factor less, since noise there is what the discriminator sees first.
+/// Scheduled: the legs' σ by the samples; waist and arms a factor less, since noise there is what the discriminator sees
+/// first.
 /// Learned: e^`log_sigma`, within its limits.
 pub fn sigma(
     config: &ExplorationConfig,
@@ -21,7 +20,7 @@ pub fn sigma(
             .map(|log| log.exp().clamp(config.min_sigma, config.max_sigma))
             .collect(),
         ExplorationKind::Scheduled => {
-            let legs = scheduled(config, samples);
+            let legs = config.sigma.at_logarithmic(samples as f64);
             joints
                 .iter()
                 .map(|joint| legs * factor(config, *joint))
@@ -32,7 +31,7 @@ pub fn sigma(
 
 /// ln σ of each joint that learned exploration begins with.
 pub(crate) fn initial_log_sigma(config: &ExplorationConfig, joints: &[JointGroup]) -> Vec<f32> {
-    let log = |joint| (config.initial_sigma * factor(config, joint)).ln();
+    let log = |joint| (config.sigma.now() * factor(config, joint)).ln();
     joints.iter().copied().map(log).collect()
 }
 
@@ -42,17 +41,6 @@ fn factor(config: &ExplorationConfig, joint: JointGroup) -> f32 {
         JointGroup::Waist => config.waist_factor,
         JointGroup::Arm => config.arm_factor,
     }
-}
-
-fn scheduled(config: &ExplorationConfig, samples: u64) -> f32 {
-    let (first, last) = (config.initial_sigma, config.final_sigma);
-    schedule::logarithmic(
-        first,
-        last,
-        config.hold_samples,
-        config.final_samples,
-        samples,
-    )
 }
 
 #[cfg(test)]

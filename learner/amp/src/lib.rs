@@ -41,15 +41,12 @@ pub mod replay;
 mod report;
 pub mod robot;
 mod saved;
-mod schedule;
 pub mod style;
 pub mod surrogate;
 pub mod window;
 
 pub use batch::{Batch, Segment, SegmentMut};
-pub use config::{
-    ConfigError, DiscriminatorConfig, ExplorationConfig, LearningConfig, PolicyConfig, PpoConfig,
-};
+pub use config::{DiscriminatorConfig, ExplorationConfig, LearningConfig, PolicyConfig, PpoConfig};
 pub use error::LearningError;
 pub use learning::{Clock, Learning};
 pub use report::{IterationReport, Seconds};

@@ -6,8 +6,14 @@
 //! | subject | file |
 //! | --- | --- |
 //! | why an episode ended | [`cause`] |
+//! | a value that may move over the samples | [`ramp`] |
+//! | why a value of the configuration is refused | [`invalid`] |
 #![forbid(unsafe_code)]
 
 pub mod cause;
+pub mod invalid;
+pub mod ramp;
 
 pub use cause::{Cause, Counts, RUNNING};
+pub use invalid::{Checked, Invalid};
+pub use ramp::Ramp;

@@ -7,14 +7,16 @@ use rand_pcg::Pcg64Mcg;
 #[test]
 fn commands_fill_their_ranges() {
     let config = CommandConfig {
-        forward: [-1.0, 2.0],
-        lateral: [0.5, 0.5],
-        yaw_rate: [-0.3, 0.0],
-        standing_share: 0.25,
+        forward: [-1.0, 2.0].into(),
+        lateral: [0.5, 0.5].into(),
+        yaw_rate: [-0.3, 0.0].into(),
+        standing_share: 0.25.into(),
         ..CommandConfig::default()
     };
     let mut rng = Pcg64Mcg::seed_from_u64(1);
-    let draws: Vec<_> = (0..4_000).map(|_| config.draw(&mut rng)).collect();
+    let draws: Vec<_> = (0..4_000)
+        .map(|_| config.draw(Occasion::default(), &mut rng))
+        .collect();
     let standing = draws.iter().filter(|c| **c == [0.0; 3]).count();
     // Binomial(4000, ¼): 1000 ± 27, so five deviations are 137.
     assert!(standing.abs_diff(1_000) < 137, "{standing}");
@@ -31,16 +33,16 @@ fn commands_fill_their_ranges() {
 #[test]
 fn pure_commands_have_one_part() {
     let config = CommandConfig {
-        forward: [0.1, 1.0],
-        lateral: [0.1, 0.4],
-        yaw_rate: [0.1, 1.0],
+        forward: [0.1, 1.0].into(),
+        lateral: [0.1, 0.4].into(),
+        yaw_rate: [0.1, 1.0].into(),
         pure_share: 0.6,
         ..CommandConfig::default()
     };
     let mut rng = Pcg64Mcg::seed_from_u64(4);
     let mut counts = [0; 4]; // forward, lateral, yaw rate alone; all
     for _ in 0..4_000 {
-        let command = config.draw(&mut rng);
+        let command = config.draw(Occasion::default(), &mut rng);
         let parts: Vec<_> = (0..3).filter(|&part| command[part] != 0.0).collect();
         counts[if let [part] = parts[..] { part } else { 3 }] += 1;
     }
@@ -53,20 +55,20 @@ fn pure_commands_have_one_part() {
 #[test]
 fn pure_commands_keep_away_from_standing() {
     let config = CommandConfig {
-        forward: [-0.6, 2.0],
-        lateral: [-0.4, 0.4],
-        yaw_rate: [-1.0, 1.0],
+        forward: [-0.6, 2.0].into(),
+        lateral: [-0.4, 0.4].into(),
+        yaw_rate: [-1.0, 1.0].into(),
         pure_share: 1.0,
         least_share: 0.5,
         ..CommandConfig::default()
     };
     // From the range's end, and from near 0, by hand.
-    assert_eq!(config.away(-0.4, config.lateral), -0.4);
-    assert!((config.away(0.1, config.lateral) - 0.25).abs() < 1e-6);
+    assert_eq!(config.away(-0.4, [-0.4, 0.4]), -0.4);
+    assert!((config.away(0.1, [-0.4, 0.4]) - 0.25).abs() < 1e-6);
     let mut rng = Pcg64Mcg::seed_from_u64(5);
     let mut slow = 0;
     for _ in 0..2_000 {
-        let [forward, lateral, yaw_rate] = config.draw(&mut rng);
+        let [forward, lateral, yaw_rate] = config.draw(Occasion::default(), &mut rng);
         assert!(forward >= 0.0 || (-0.6..=-0.3).contains(&forward));
         assert!(lateral == 0.0 || (0.2..=0.4).contains(&lateral.abs()));
         assert!(yaw_rate == 0.0 || (0.5..=1.0).contains(&yaw_rate.abs()));
@@ -78,14 +80,18 @@ fn pure_commands_keep_away_from_standing() {
 #[test]
 fn starts_match_their_clip_in_the_given_share() {
     let clip = [0.8, 0.0, 0.1];
+    let start = Occasion {
+        kind: None,
+        motion: Some(clip),
+    };
     let mut rng = Pcg64Mcg::seed_from_u64(2);
     for (share, expected) in [(0.0, 0), (0.9, 1_800), (1.0, 2_000)] {
         let config = CommandConfig {
-            matched_share: share,
+            matched_share: Ramp::Constant(share),
             ..CommandConfig::default()
         };
         let matched = (0..2_000)
-            .filter(|_| config.draw_for_start(None, &clip, &mut rng) == clip)
+            .filter(|_| config.draw(start, &mut rng) == clip)
             .count();
         // Binomial(2000, 0.9) has a deviation of 13.4.
         assert!(matched.abs_diff(expected) < 67, "{matched} of {expected}");
@@ -105,14 +111,14 @@ fn intervals_are_seconds_in_steps() {
 fn bad_values_are_named() {
     let refused = |config: CommandConfig| config.validate().unwrap_err().to_string();
     let forward = refused(CommandConfig {
-        forward: [1.0, 0.5],
+        forward: [1.0, 0.5].into(),
         ..CommandConfig::default()
     });
-    assert!(forward.contains("command.forward"), "{forward}");
+    assert!(forward.contains("forward"), "{forward}");
     let share = refused(CommandConfig {
-        matched_share: 1.5,
+        matched_share: 1.5.into(),
         ..CommandConfig::default()
     });
-    assert!(share.contains("command.matched_share"), "{share}");
+    assert!(share.contains("matched_share"), "{share}");
     CommandConfig::default().validate().unwrap();
 }

@@ -11,9 +11,14 @@ use super::*;
 use crate::command::CommandConfig;
 use crate::model::Variation;
 use crate::physics::Physics;
+use crate::reward::RewardConfig;
+use crate::reward::track::Track;
 use crate::rows::StepRows;
 use crate::start::StartConfig;
-use crate::stray::StrayConfig;
+use crate::termination::TerminationConfig;
+use crate::termination::fall::FallConfig;
+use crate::termination::stray::StrayConfig;
+use crate::termination::time_out::TimeOutConfig;
 use g1::JOINTS;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -57,16 +62,24 @@ impl Actions {
     }
 }
 
+/// Episodes of so many steps, and otherwise the usual ends.
+fn of_steps(steps: u32, staggered: bool) -> TerminationConfig {
+    TerminationConfig {
+        time_out: TimeOutConfig { steps, staggered },
+        ..TerminationConfig::default()
+    }
+}
+
 /// Short episodes and everything random, so that resets, pushes and commands all come.
 fn eventful() -> (TaskConfig, RandomizationConfig) {
     let task = TaskConfig {
-        episode_steps: 20,
+        termination: of_steps(20, true),
         command: CommandConfig {
             resample_seconds: [0.06, 0.2],
             ..CommandConfig::default()
         },
         start: StartConfig {
-            reference_share: 0.7,
+            reference_share: 0.7.into(),
             ..StartConfig::default()
         },
         ..TaskConfig::default()

@@ -7,9 +7,9 @@ use rand_pcg::Pcg64Mcg;
 
 fn ranges() -> CommandConfig {
     CommandConfig {
-        forward: [-0.5, 1.5],
-        lateral: [-0.4, 0.4],
-        yaw_rate: [-1.0, 1.0],
+        forward: [-0.5, 1.5].into(),
+        lateral: [-0.4, 0.4].into(),
+        yaw_rate: [-1.0, 1.0].into(),
         ..CommandConfig::default()
     }
 }
@@ -26,7 +26,7 @@ fn what_a_kind_draws_is_of_that_kind() {
     }
     // Nothing of the kind in the range: as near as it goes, and no panic.
     let ahead = CommandConfig {
-        forward: [0.4, 1.2],
+        forward: [0.4, 1.2].into(),
         ..ranges()
     };
     assert_eq!(Kind::Backward.draw(&ahead, &mut rng), [0.4, 0.0, 0.0]);
@@ -37,7 +37,7 @@ fn stepping_aside_and_turning_are_approached_from_walking_on() {
     let mut rng = Pcg64Mcg::seed_from_u64(1);
     let config = CommandConfig {
         kinds: Some(KindsConfig {
-            approach: 0.4,
+            approach: 0.4.into(),
             lateral: 1.0,
             ..KindsConfig::default()
         }),
@@ -93,13 +93,13 @@ fn frames_are_drawn_by_weight_within_their_kind() {
 #[test]
 fn kinds_without_a_range_are_refused() {
     let mut config = ranges();
-    config.forward = [0.4, 1.2];
+    config.forward = [0.4, 1.2].into();
     config.kinds = Some(KindsConfig {
         backward: 1.0,
         ..KindsConfig::default()
     });
     let error = config.validate().unwrap_err().to_string();
-    assert!(error.contains("command.kinds.backward = 1"), "{error}");
+    assert!(error.contains("kinds.backward = 1"), "{error}");
     config.kinds = Some(KindsConfig::default());
     assert!(config.validate().is_err(), "nobody has a share");
 }

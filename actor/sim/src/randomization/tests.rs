@@ -178,8 +178,7 @@ fn impossible_ranges_are_refused() {
 #[test]
 fn the_table_grows_with_the_samples() {
     let config = RandomizationConfig {
-        from_samples: 1e6,
-        to_samples: 3e6,
+        strength: Ramp::moving(0.0, 1.0, [1e6, 3e6]),
         gravity_noise: false,
         ..RandomizationConfig::default()
     };
@@ -190,15 +189,19 @@ fn the_table_grows_with_the_samples() {
     assert_eq!(half.friction_range, [0.75, 1.0]); // halfway from 1
     assert_eq!(half.joint_velocity_range, [-0.75, 0.75]);
     assert!(half.impulse && !half.gravity_noise);
-    assert_eq!(config.at(9e6), config);
+    let grown = RandomizationConfig {
+        strength: 1.0.into(),
+        ..config.clone()
+    };
+    assert_eq!(config.at(9e6), grown);
     let whole = RandomizationConfig::default();
     assert_eq!(whole.at(0.0), whole);
     let backward = RandomizationConfig {
-        to_samples: 0.5e6,
+        strength: Ramp::moving(0.0, 1.0, [1e6, 0.5e6]),
         ..config
     };
     let error = backward.validate().unwrap_err().to_string();
-    assert!(error.contains("from_samples"), "{error}");
+    assert!(error.contains("strength.samples"), "{error}");
 }
 
 #[test]

@@ -28,7 +28,7 @@ fn frames_are_drawn_by_weight_and_lifted_out_of_the_ground() {
         ..StartConfig::default()
     };
     let commands = CommandConfig {
-        matched_share: 1.0,
+        matched_share: Ramp::Constant(1.0),
         ..CommandConfig::default()
     };
     let mut rng = Pcg64Mcg::seed_from_u64(1);
@@ -78,7 +78,7 @@ fn without_motion_or_share_the_robot_stands() {
     let commands = CommandConfig::default();
     let mut rng = Pcg64Mcg::seed_from_u64(3);
     let start = StartConfig {
-        reference_share: 0.0,
+        reference_share: Ramp::Constant(0.0),
         position_noise: 0.0,
         velocity_noise: 0.0,
         ..StartConfig::default()

@@ -1,8 +1,19 @@
-//! Rewards and falls by hand.
+//! Rewards by hand, and values that move.
 
 use super::*;
+use crate::feet::Footing;
+use crate::gate::effort::Effort;
+use crate::gate::single_stance::SingleStance;
+use crate::kind::KindsConfig;
+use crate::moment::{uprightness, velocity_error};
+use crate::reward::track::Track;
+use crate::termination::stray::StrayConfig;
+use g1::RobotState;
 use nalgebra::{UnitQuaternion, Vector3};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_3};
+use vocabulary::Ramp;
 
 fn close(a: f32, b: f32) -> bool {
     (a - b).abs() < 1e-6
@@ -18,19 +29,38 @@ fn walking() -> RobotState {
     }
 }
 
+fn pay(task: &TaskConfig, command: [f32; 3], state: &RobotState, work: f32) -> f32 {
+    task.pay(&Moment::new(&command, state, work, &Footing::default()))
+}
+
+fn track(kernel: f32, yaw_rate: f32) -> Track {
+    Track {
+        weight: 1.0.into(),
+        kernel: kernel.into(),
+        yaw_rate: yaw_rate.into(),
+    }
+}
+
+fn paying(reward: RewardConfig) -> TaskConfig {
+    TaskConfig {
+        reward,
+        ..TaskConfig::default()
+    }
+}
+
 #[test]
 fn equation_14_by_hand() {
     let task = TaskConfig::default();
     // v = (1, 0) in the heading frame. v* = (1, 0): no error, upright.
-    assert!(close(task.reward(&[1.0, 0.0, 0.5], &walking(), 0.0), 1.0));
+    assert!(close(pay(&task, [1.0, 0.0, 0.5], &walking(), 0.0), 1.0));
     // v* = (3, 1): error 2² + 1² = 5, exp(−5/4) = 0.286505.
-    assert!(close(tracking_error(&[3.0, 1.0, 0.0], &walking()), 5.0));
+    assert!(close(velocity_error(&[3.0, 1.0, 0.0], &walking()), 5.0));
     assert!(close(
-        task.reward(&[3.0, 1.0, 0.0], &walking(), 0.0),
+        pay(&task, [3.0, 1.0, 0.0], &walking(), 0.0),
         0.286_504_8
     ));
     // The literal equation ignores the yaw rate.
-    assert!(close(task.reward(&[1.0, 0.0, -9.0], &walking(), 0.0), 1.0));
+    assert!(close(pay(&task, [1.0, 0.0, -9.0], &walking(), 0.0), 1.0));
 }
 
 #[test]
@@ -38,88 +68,294 @@ fn leaning_costs_the_cosine() {
     let mut state = walking();
     state.orientation *= UnitQuaternion::from_euler_angles(FRAC_PI_3, 0.0, 0.0);
     // Rolled by 60°: cos 60° = ½; the heading is unchanged.
-    assert!(close(
-        TaskConfig::default().reward(&[1.0, 0.0, 0.0], &state, 0.0),
-        0.5
-    ));
+    let mut task = TaskConfig::default();
+    assert!(close(pay(&task, [1.0, 0.0, 0.0], &state, 0.0), 0.5));
+    // A gate is raised to its weight: ½² = ¼, and taken away by 0.
+    for (weight, left) in [(2.0, 0.25), (0.0, 1.0)] {
+        task.gate.upright.as_mut().unwrap().weight = Ramp::Constant(weight);
+        assert!(close(pay(&task, [1.0, 0.0, 0.0], &state, 0.0), left));
+    }
     // Upside down pays nothing rather than less than nothing.
     state.orientation = UnitQuaternion::from_euler_angles(3.0, 0.0, 0.0);
-    assert_eq!(upright(&state), 0.0);
+    assert_eq!(uprightness(&state), 0.0);
 }
 
 #[test]
-fn kernel_and_yaw_rate_weight_of_the_recipe() {
-    let task = TaskConfig {
-        kernel: 2.0,
-        yaw_rate_weight: 0.25,
-        ..TaskConfig::default()
-    };
+fn kernel_and_yaw_rate_of_the_recipe() {
+    let task = paying(RewardConfig {
+        track: Some(track(2.0, 0.25)),
+        ..RewardConfig::default()
+    });
     // Velocity error ½ m/s, yaw error 1 rad/s: exp(−2·(¼ + ¼·1)) = exp(−1).
-    let reward = task.reward(&[1.5, 0.0, 1.5], &walking(), 0.0);
+    let reward = pay(&task, [1.5, 0.0, 1.5], &walking(), 0.0);
     assert!(close(reward, 0.367_879_44), "{reward}");
 }
 
 #[test]
 fn work_costs_a_share_where_it_counts() {
     let mut task = TaskConfig::default();
-    assert!(close(task.reward(&[1.0, 0.0, 0.5], &walking(), 9.0), 1.0));
+    assert!(close(pay(&task, [1.0, 0.0, 0.5], &walking(), 9.0), 1.0));
     // Two joules at 0.05 each: exp(−0.1).
-    task.effort_weight = 0.05;
-    let reward = task.reward(&[1.0, 0.0, 0.5], &walking(), 2.0);
+    task.gate.effort = Some(Effort {
+        weight: 0.05.into(),
+    });
+    let reward = pay(&task, [1.0, 0.0, 0.5], &walking(), 2.0);
     assert!(close(reward, 0.904_837_4), "{reward}");
+    // A violent step, of which e^−E alone would be 0: exp(−0.05·200) = 4.54e−5.
+    let reward = pay(&task, [1.0, 0.0, 0.5], &walking(), 200.0);
+    assert!((reward / 4.539_993e-5 - 1.0).abs() < 1e-4, "{reward}");
 }
 
 #[test]
-fn a_wide_kernel_pays_half() {
-    let task = TaskConfig {
-        kernel: 4.0,
-        wide_kernel: Some(1.0),
-        ..TaskConfig::default()
-    };
+fn terms_are_paid_by_their_weights() {
+    let mut task = paying(RewardConfig {
+        track: Some(track(4.0, 0.0)),
+        track_wide: Some(track(1.0, 0.0)),
+    });
     // v = (1, 0), v* = (2, 0): ½·(e⁻⁴ + e⁻¹) = ½·(0.018316 + 0.367879).
-    let reward = task.reward(&[2.0, 0.0, 0.5], &walking(), 0.0);
+    let reward = pay(&task, [2.0, 0.0, 0.5], &walking(), 0.0);
     assert!(close(reward, 0.193_097_5), "{reward}");
-    assert!(close(task.reward(&[1.0, 0.0, 0.5], &walking(), 0.0), 1.0));
+    assert!(close(pay(&task, [1.0, 0.0, 0.5], &walking(), 0.0), 1.0));
+    // Three to one: (0.054947 + 0.367879) / 4.
+    task.reward.track.as_mut().unwrap().weight = 3.0.into();
+    let reward = pay(&task, [2.0, 0.0, 0.5], &walking(), 0.0);
+    assert!(close(reward, 0.105_706_6), "{reward}");
+    // One that weighs nothing does not exist.
+    task.reward.track.as_mut().unwrap().weight = 0.0.into();
+    let reward = pay(&task, [2.0, 0.0, 0.5], &walking(), 0.0);
+    assert!(close(reward, 0.367_879_44), "{reward}");
+}
+
+/// Eq. 14 written out in one line, with the recipe's yaw rate: what tables of terms have to give to the last bit.
+fn in_one_line(kernel: f32, yaw_rate: f32, command: &[f32; 3], state: &RobotState) -> f32 {
+    let yaw_error = command[2] - state.angular_velocity.z;
+    let error = velocity_error(command, state) + yaw_rate * yaw_error.powi(2);
+    (-kernel * error).exp() * uprightness(state)
 }
 
 #[test]
-fn falls_are_low_or_tilted() {
-    let task = TaskConfig::default();
-    let mut state = RobotState::standing();
-    assert!(!task.has_fallen(&state));
-    state.position.z = 0.549;
-    assert!(task.has_fallen(&state));
-    state.position.z = 0.551;
-    assert!(!task.has_fallen(&state));
-    // cos 45° = 0.707, cos 46° = 0.695.
-    state.orientation = UnitQuaternion::from_euler_angles(0.0, 45_f32.to_radians(), 0.0);
-    assert!(!task.has_fallen(&state));
-    state.orientation = UnitQuaternion::from_euler_angles(0.0, 46_f32.to_radians(), 0.0);
-    assert!(task.has_fallen(&state));
-    state.position.z = f32::NAN;
-    assert!(task.has_fallen(&state));
+fn the_paper_and_the_recipe_pay_the_same_bits_as_the_equation() {
+    let mut rng = Pcg64Mcg::seed_from_u64(14);
+    let mut draw = |size: f32| size * (2.0 * rng.random::<f32>() - 1.0);
+    for _ in 0..2_000 {
+        let state = RobotState {
+            orientation: UnitQuaternion::from_euler_angles(draw(0.8), draw(0.8), draw(3.1)),
+            linear_velocity: Vector3::new(draw(2.0), draw(2.0), draw(1.0)),
+            angular_velocity: Vector3::new(draw(3.0), draw(3.0), draw(3.0)),
+            ..RobotState::standing()
+        };
+        let command = [draw(2.0), draw(1.0), draw(1.0)];
+        for (kernel, yaw_rate) in [(0.25, 0.0), (2.0, 0.25), (4.0, 0.25), (2.7, 0.25)] {
+            let task = paying(RewardConfig {
+                track: Some(track(kernel, yaw_rate)),
+                ..RewardConfig::default()
+            });
+            let paid = pay(&task, command, &state, 2.5);
+            let expected = in_one_line(kernel, yaw_rate, &command, &state);
+            assert_eq!(paid.to_bits(), expected.to_bits(), "{command:?} {state:?}");
+        }
+    }
+    // The default is the paper's.
+    let one_line = in_one_line(0.25, 0.0, &[2.0, 0.5, 1.0], &walking());
+    assert_eq!(
+        pay(&TaskConfig::default(), [2.0, 0.5, 1.0], &walking(), 9.0),
+        one_line
+    );
+}
+
+#[test]
+fn terms_are_told_by_name_and_only_those_that_exist() {
+    let task: TaskConfig =
+        read("[reward.track_wide]\nkernel = 1.0\n[gate.effort]\nweight = 0.05\n");
+    let mut sums = Sums::default();
+    let feet = Footing::default();
+    for speed in [1.0, 2.0] {
+        let command = [speed, 0.0, 0.5];
+        task.pay_and_tell(&Moment::new(&command, &walking(), 2.0, &feet), &mut sums);
+    }
+    let told = sums.take();
+    let names: Vec<&str> = told.iter().map(|(name, _)| *name).collect();
+    assert_eq!(
+        names,
+        [
+            "reward/track",
+            "reward/track_wide",
+            "gate/upright",
+            "gate/effort"
+        ]
+    );
+    // Errors of 0 and 1: ½·(1 + e^−¼), ½·(1 + e⁻¹); upright; e^−0.1.
+    let means = [0.889_400_4, 0.683_939_7, 1.0, 0.904_837_4];
+    assert!(
+        told.iter()
+            .zip(means)
+            .all(|((_, told), mean)| close(*told, mean)),
+        "{told:?}"
+    );
+}
+
+fn read(text: &str) -> TaskConfig {
+    toml::from_str(text).unwrap()
 }
 
 #[test]
 fn a_section_holds_only_its_differences() {
-    let parsed: TaskConfig = serde_from("kernel = 2.0\n[start]\nlift = 0.01\n");
-    assert_eq!(parsed.kernel, 2.0);
+    let parsed = read("[reward.track]\nkernel = 2.0\n[start]\nlift = 0.01\n");
+    assert_eq!(parsed.reward.track, Some(track(2.0, 0.0)));
+    assert_eq!(parsed.gate, GateConfig::default());
     assert_eq!(parsed.start.lift, 0.01);
-    assert_eq!(parsed.episode_steps, 1_000);
-    assert!(toml::from_str::<TaskConfig>("kernle = 2.0").is_err());
+    assert_eq!(parsed.termination.time_out.steps, 1_000);
+    for unknown in [
+        "kernle = 2.0",
+        "[reward.pose]",
+        "[gate.upright]\nkernel = 1",
+    ] {
+        assert!(toml::from_str::<TaskConfig>(unknown).is_err(), "{unknown}");
+    }
     parsed.validate().unwrap();
-    let bad = TaskConfig {
-        fall_height: 0.9,
-        ..TaskConfig::default()
-    };
-    assert!(
-        bad.validate()
-            .unwrap_err()
-            .to_string()
-            .contains("fall_height = 0.9")
-    );
 }
 
-fn serde_from(text: &str) -> TaskConfig {
-    toml::from_str(text).unwrap()
+#[test]
+fn what_cannot_be_used_is_told_by_its_path() {
+    for (text, path) in [
+        (
+            "[termination.fall]\nheight = 0.9",
+            "termination.fall.height",
+        ),
+        (
+            "[termination.time_out]\nsteps = 0",
+            "termination.time_out.steps",
+        ),
+        ("[termination.stray]\nleast = 0", "termination.stray.least"),
+        ("[reward.track]\nkernel = -1", "reward.track.kernel"),
+        (
+            "[reward.track]\nkernel = { from = 1, to = -1, samples = [0, 1] }",
+            "reward.track.kernel.to",
+        ),
+        (
+            "[reward.track_wide]\nweight = -1",
+            "reward.track_wide.weight",
+        ),
+        ("[reward.track]\nweight = 0", "reward"),
+        (
+            "[reward.track]\nweight = { from = 0, to = 1, samples = [0, 1] }",
+            "reward",
+        ),
+        ("[gate.effort]\nweight = nan", "gate.effort.weight"),
+        (
+            "[gate.single_stance]\nshare = 1.5",
+            "gate.single_stance.share",
+        ),
+        (
+            "[command]\nforward = { from = [0, 1], to = [1, 0], samples = [0, 1] }",
+            "command.forward.to",
+        ),
+        (
+            "[command]\nkinds = { backward = 1 }",
+            "command.kinds.backward",
+        ),
+        (
+            "[start]\nreference_share = { from = 1, to = 0, samples = [2, 1] }",
+            "start.reference_share.samples",
+        ),
+    ] {
+        assert_eq!(read(text).validate().unwrap_err().path, path, "{text}");
+    }
+}
+
+/// Every number of a table, and every range, by its path; those of lists of other things are none.
+fn numbers(table: &toml::Table, before: &str) -> Vec<String> {
+    let inside = |(key, value): (&String, &toml::Value)| {
+        let path = format!("{before}{key}");
+        match value {
+            toml::Value::Table(inner) => numbers(inner, &format!("{path}.")),
+            toml::Value::Float(_) | toml::Value::Array(_) => vec![path],
+            _ => Vec::new(),
+        }
+    };
+    table.iter().flat_map(inside).collect()
+}
+
+#[test]
+fn whatever_may_move_does() {
+    let full = TaskConfig {
+        reward: RewardConfig {
+            track_wide: Some(track(1.0, 0.5)),
+            ..RewardConfig::default()
+        },
+        gate: GateConfig {
+            effort: Some(Effort::default()),
+            single_stance: Some(SingleStance::default()),
+            ..GateConfig::default()
+        },
+        termination: TerminationConfig {
+            stray: Some(StrayConfig::default()),
+            ..TerminationConfig::default()
+        },
+        command: CommandConfig {
+            kinds: Some(KindsConfig::default()),
+            ..CommandConfig::default()
+        },
+        ..TaskConfig::default()
+    };
+    let table = toml::Table::try_from(&full).unwrap();
+    let mut moving = Vec::new();
+    for path in numbers(&table, "") {
+        let mut other = table.clone();
+        let mut keys: Vec<&str> = path.split('.').collect();
+        let last = keys.pop().unwrap();
+        let holder = keys.iter().fold(&mut other, |table, key| {
+            table[*key].as_table_mut().expect("a table")
+        });
+        let end = |to: bool| match &holder[last] {
+            toml::Value::Array(_) => {
+                toml::Value::Array(vec![0.0.into(), if to { 3.0 } else { 1.0 }.into()])
+            }
+            _ => toml::Value::Float(if to { 3.0 } else { 1.0 }),
+        };
+        let way = [
+            ("from", end(false)),
+            ("to", end(true)),
+            ("samples", toml::Value::Array(vec![0.0.into(), 8.0.into()])),
+        ];
+        let way = way
+            .map(|(key, value)| (key.to_owned(), value))
+            .into_iter()
+            .collect();
+        holder.insert(last.to_owned(), toml::Value::Table(way));
+        let Ok(task) = other.try_into::<TaskConfig>() else {
+            continue;
+        };
+        let halfway = toml::Table::try_from(task.at(4.0)).unwrap();
+        let value = path
+            .split('.')
+            .fold(&toml::Value::Table(halfway), |value, key| &value[key])
+            .clone();
+        let arrived = match &value {
+            toml::Value::Array(ends) => ends[1].as_float(),
+            other => other.as_float(),
+        };
+        // Halfway from 1 to 3, and no ramp any more.
+        assert_eq!(arrived, Some(2.0), "{path} does not move: {value}");
+        moving.push(path);
+    }
+    for path in [
+        "reward.track.kernel",
+        "reward.track_wide.weight",
+        "gate.effort.weight",
+        "gate.single_stance.share",
+        "termination.stray.share",
+        "command.forward",
+        "command.lateral",
+        "command.yaw_rate",
+        "command.matched_share",
+        "command.standing_share",
+        "command.kinds.approach",
+        "start.reference_share",
+    ] {
+        assert!(
+            moving.contains(&path.to_owned()),
+            "{path} cannot move: {moving:?}"
+        );
+    }
 }

@@ -118,8 +118,8 @@ impl LearnerBench {
         let rows = Rows {
             observations: &observations,
             mirrored: &observations,
-            mirrored_share: config.ppo.mirrored_share,
-            kl_target: config.ppo.kl_target,
+            mirrored_share: config.ppo.mirrored_share.now(),
+            kl_target: config.ppo.kl_target.now(),
             critic_alone: false,
             actions: &actions,
             means: &means,

@@ -5,8 +5,8 @@ use g1::gait::{CONTACT_FORCE, Conduct};
 use g1::joints::{LEFT_LEG, RIGHT_LEG};
 use g1::{ACTION, FEATURES, JOINTS};
 use policy::Policy;
-use sim::{Fleet, LastStep, RandomizationConfig, Starts, StepRows};
-use vocabulary::Cause;
+use sim::{Fleet, LastStep, RandomizationConfig, Starts, StepRows, TimeOutConfig};
+use vocabulary::{Cause, Ramp};
 
 use super::judge::Judge;
 use super::scenario::Scenario;
@@ -143,16 +143,18 @@ impl<'a> Walker<'a> {
         let scenario = unit.scenario;
         let mut task = self.subject.task.clone();
         // Nobody's time is up before ours.
-        task.episode_steps = conditions.steps + 1;
-        task.staggered = false;
+        task.termination.time_out = TimeOutConfig {
+            steps: conditions.steps + 1,
+            staggered: false,
+        };
         // A judge counts falls; disobedience shows in the velocity errors.
-        task.stray = None;
+        task.termination.stray = None;
         let (starts, share) = if scenario.from_reference {
             (self.subject.starts(scenario.commands[0]), 1.0)
         } else {
             (Starts::default(), 0.0)
         };
-        task.start.reference_share = share;
+        task.start.reference_share = Ramp::Constant(share);
         let rows = scenario.rows.iter().map(String::as_str);
         let randomization = RandomizationConfig::only(rows).context("Table I has no such row")?;
         // Robots of one unit differ by their index; units differ by their seed.

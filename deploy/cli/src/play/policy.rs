@@ -4,8 +4,8 @@ use anyhow::Result;
 use g1::ACTION;
 use playback::{Frame, Recording};
 use sim::world::CONTROL_STEP;
-use sim::{Fleet, RandomizationConfig, Starts, StepRows};
-use vocabulary::RUNNING;
+use sim::{FallConfig, Fleet, RandomizationConfig, Starts, StepRows, TimeOutConfig};
+use vocabulary::{RUNNING, Ramp};
 
 use super::Play;
 use crate::evaluate::subject::Subject;
@@ -17,12 +17,16 @@ pub(super) fn record(play: &Play) -> Result<Recording> {
     let subject = Subject::open(&play.place, &play.what)?;
     let steps = (play.seconds / f64::from(CONTROL_STEP)).round() as u32;
     let mut task = subject.task.clone();
-    task.episode_steps = steps + 1;
-    task.staggered = false;
-    task.start.reference_share = f32::from(u8::from(play.from_reference));
+    task.termination.time_out = TimeOutConfig {
+        steps: steps + 1,
+        staggered: false,
+    };
+    task.start.reference_share = Ramp::Constant(f32::from(u8::from(play.from_reference)));
     // One who watches wants to see the fall; when it counts as one is noted by the run's own rule.
-    task.fall_height = LYING;
-    task.fall_upright = -1.0;
+    task.termination.fall = FallConfig {
+        height: LYING,
+        upright: -1.0,
+    };
     task.physics = play.physics.into();
     let randomization = if play.randomize {
         RandomizationConfig::default()
@@ -51,7 +55,7 @@ pub(super) fn record(play: &Play) -> Result<Recording> {
         let mut action = vec![0.0; ACTION];
         policy.means(fleet.observations(), 1, &mut action);
         let state = *fleet.state(0);
-        if recording.fell_at.is_none() && subject.task.has_fallen(&state) {
+        if recording.fell_at.is_none() && subject.task.termination.fall.has_fallen(&state) {
             recording.fell_at = Some(f64::from(step) * recording.frame_seconds);
         }
         recording.frames.push(Frame {

@@ -15,7 +15,7 @@ pub(super) fn board(frame: &mut Frame<'_>, board: &Board) {
         Constraint::Length(1),
         Constraint::Fill(1),
         Constraint::Fill(1),
-        Constraint::Length(6),
+        Constraint::Length(7),
         Constraint::Length(1),
     ])
     .areas(frame.area());
@@ -159,6 +159,7 @@ fn now(board: &Board) -> Vec<Line<'static>> {
             figure("hip_correlation"),
             figures::ends(newest).unwrap_or_default(),
         )),
+        Line::from(figures::terms(newest).unwrap_or_default()),
         Line::from(format!(
             "{} rollouts of {} actors · lag {} · dropped {} · stale {} · duplicated {} · waiting {} s · missed here {}",
             figure("rollouts"),

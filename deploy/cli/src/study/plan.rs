@@ -218,7 +218,7 @@ mod tests {
         check_unchanged(&planned[0], &folder).unwrap();
 
         let mut other = planned[0].config.clone();
-        other.put("task.kernel", 0.125, "a test");
+        other.put("task.reward.track.kernel", 0.125, "a test");
         other.write(&run.config_path(), "a test").unwrap();
         let refused = check_unchanged(&planned[0], &folder)
             .unwrap_err()

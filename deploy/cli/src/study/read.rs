@@ -137,7 +137,7 @@ fn facts(folder: &StudyFolder, runs: &[Run], otherwise: usize) -> Result<Vec<(St
                 value("scheduler.alpha")
             ),
         );
-        tell("kernel of Eq. 14", value("task.kernel"));
+        tell("kernel of Eq. 14", value("task.reward.track.kernel"));
     }
     let rates: Vec<f64> = runs
         .iter()

@@ -29,7 +29,7 @@ const NAMES: [(&str, &str); 18] = [
 ];
 
 /// Keys with a group of their own keep it.
-const GROUP: &str = "termination/";
+const GROUPS: [&str; 3] = ["reward/", "gate/", "termination/"];
 
 /// Every number of a record with its name. Inner objects are flattened; `iteration` is the axis and no figure.
 pub(super) fn scalars(record: &Value) -> Vec<(String, f64)> {
@@ -54,7 +54,7 @@ fn collect(prefix: &str, value: &Value, found: &mut Vec<(String, f64)>) {
 }
 
 fn name(path: &str) -> String {
-    if path.starts_with(GROUP) {
+    if GROUPS.iter().any(|group| path.starts_with(group)) {
         return path.to_owned();
     }
     let known = NAMES.iter().find(|(key, _)| *key == path);
@@ -74,7 +74,7 @@ mod tests {
     fn numbers_are_named_and_nothing_else_is_shown() {
         let record = json!({
             "iteration": 7, "reward_mean": 0.5, "style_weight": 0.7, "switched_at": null, "scheduler_away": true,
-            "fault": "none", "termination/stray": 3, "timing": { "samples_per_second": 9.0, "learning": { "ppo": 0.25 } },
+            "fault": "none", "termination/stray": 3, "reward/track": 0.5, "timing": { "samples_per_second": 9.0, "learning": { "ppo": 0.25 } },
         });
         let mut got = scalars(&record);
         got.sort_by(|a, b| a.0.cmp(&b.0));
@@ -84,6 +84,7 @@ mod tests {
             ("Perf/learning_ppo", 0.25),
             ("Perf/total_fps", 9.0),
             ("Train/mean_reward", 0.5),
+            ("reward/track", 0.5),
             ("termination/stray", 3.0),
         ];
         assert_eq!(got, expected.map(|(name, value)| (name.to_owned(), value)));

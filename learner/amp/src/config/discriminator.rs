@@ -1,8 +1,9 @@
 //! `[discriminator]`: the judge of style.
 
-use super::{Check, ConfigError};
+use super::Check;
 use crate::{COMMAND, FEATURES};
 use serde::{Deserialize, Serialize};
+use vocabulary::Checked;
 
 /// `[discriminator]`: the judge of style.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -99,7 +100,7 @@ impl DiscriminatorConfig {
     }
 
     /// Refuses the first value that learning cannot work with.
-    pub fn validate(&self) -> Result<(), ConfigError> {
+    pub fn validate(&self) -> Checked {
         Check(Ok(()))
             .layers("hidden", &self.hidden)
             .that(
@@ -112,7 +113,7 @@ impl DiscriminatorConfig {
                 self.command_blur
                     .is_none_or(|blur| blur.iter().all(|x| x.is_finite() && *x > 0.0)),
                 "command_blur",
-                format!("{:?}", self.command_blur.unwrap_or_default()),
+                self.command_blur.unwrap_or_default(),
                 "use three numbers above 0: m/s forward, m/s aside, rad/s",
             )
             .count("steps", self.steps, 1000)

@@ -1,7 +1,8 @@
 //! `[policy]` and `[exploration]`: what acts, and how widely it tries.
 
-use super::{Check, ConfigError};
+use super::Check;
 use serde::{Deserialize, Serialize};
+use vocabulary::{Checked, Ramp};
 
 /// `[policy]`: sizes of actor and critic, and what they see.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,16 +24,11 @@ pub struct PolicyConfig {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ExplorationConfig {
-    /// `scheduled` follows the samples, `learned` is adapted by PPO from `initial_sigma` on.
+    /// `scheduled` follows the samples, `learned` is adapted by PPO from where `sigma` begins.
     pub kind: ExplorationKind,
-    /// Legs' σ at first: 0.6 is 0.15 rad. The recipe's; σ 0.15 from the start got stuck falling.
-    pub initial_sigma: f32,
-    /// Scheduled: legs' σ at the end. The recipe's.
-    pub final_sigma: f32,
-    /// Scheduled: samples until σ begins to shrink. The recipe's.
-    pub hold_samples: f64,
-    /// Scheduled: samples at which it has arrived, on a straight line of log σ. The recipe's.
-    pub final_samples: f64,
+    /// Legs' σ, on a straight line of its logarithm where it moves. 0.6 is 0.15 rad. The recipe's, as are the samples: σ
+    /// 0.15 from the start got stuck falling.
+    pub sigma: Ramp<f32>,
     /// Waist's σ in parts of the legs'. Noise there is the discriminator's shortcut. The recipe's.
     pub waist_factor: f32,
     /// Arms' σ in parts of the legs'. The recipe's.
@@ -69,10 +65,7 @@ impl Default for ExplorationConfig {
     fn default() -> Self {
         Self {
             kind: ExplorationKind::Scheduled,
-            initial_sigma: 0.6,
-            final_sigma: 0.2,
-            hold_samples: 1.0e6,
-            final_samples: 3.0e6,
+            sigma: Ramp::moving(0.6, 0.2, [1.0e6, 3.0e6]),
             waist_factor: 0.3,
             arm_factor: 0.3,
             min_sigma: 0.05,
@@ -83,7 +76,7 @@ impl Default for ExplorationConfig {
 
 impl PolicyConfig {
     /// Refuses the first value that learning cannot work with.
-    pub fn validate(&self) -> Result<(), ConfigError> {
+    pub fn validate(&self) -> Checked {
         Check(Ok(()))
             .layers("hidden", &self.hidden)
             .layers("critic_hidden", &self.critic_hidden)
@@ -96,22 +89,9 @@ impl PolicyConfig {
 
 impl ExplorationConfig {
     /// Refuses the first value that learning cannot work with.
-    pub fn validate(&self) -> Result<(), ConfigError> {
+    pub fn validate(&self) -> Checked {
         Check(Ok(()))
-            .positive("initial_sigma", self.initial_sigma)
-            .positive("final_sigma", self.final_sigma)
-            .that(
-                self.hold_samples >= 0.0 && self.hold_samples.is_finite(),
-                "hold_samples",
-                self.hold_samples,
-                "use a finite number, 0 or above",
-            )
-            .that(
-                self.final_samples >= self.hold_samples && self.final_samples.is_finite(),
-                "final_samples",
-                self.final_samples,
-                "use hold_samples or more",
-            )
+            .ramp("sigma", &self.sigma, Check::positive)
             .positive("waist_factor", self.waist_factor)
             .positive("arm_factor", self.arm_factor)
             .positive("min_sigma", self.min_sigma)

@@ -1,8 +1,8 @@
 //! `[ppo]`: how the policy is improved.
 
-use super::{Check, ConfigError};
-use crate::schedule;
+use super::Check;
 use serde::{Deserialize, Serialize};
+use vocabulary::{Checked, Ramp};
 
 /// `[ppo]`: how the policy is improved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,11 +30,9 @@ pub struct PpoConfig {
     pub learning_rate: f32,
     /// When the rate follows the KL divergence. Per minibatch it saw-toothed in the recipe's trials.
     pub schedule: RateSchedule,
-    /// Mean KL divergence of the last epoch that the rate is steered to. The recipe's.
-    pub kl_target: f32,
-    /// That target shrinks later on, so that the last policies of a long run hardly differ. Default: it never does.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub kl_settle: Option<KlSettle>,
+    /// Mean KL divergence of the last epoch that the rate is steered to, on a straight line of its logarithm where it
+    /// moves. The recipe's. One that shrinks makes the last policies of a long run hardly differ.
+    pub kl_target: Ramp<f32>,
     /// The rate changes when KL leaves [target / band, target · band].
     pub kl_band: f32,
     /// Factor of one change. The recipe's.
@@ -48,10 +46,7 @@ pub struct PpoConfig {
     /// Over which rows advantages get mean 0 and deviation 1.
     pub advantage_normalization: AdvantageNormalization,
     /// Share of each minibatch that is replaced by its left–right mirror image. The recipe's half.
-    pub mirrored_share: f32,
-    /// That share sinks to nothing between these numbers of samples. Default: it never does.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mirrored_fade: Option<[f64; 2]>,
+    pub mirrored_share: Ramp<f32>,
     /// Samples at first of which the critic alone learns: for a policy that comes without critic and optimizer, and would
     /// be led astray by a new one. Default 0; `ampco train --from` a shipped policy makes it a million.
     pub critic_first: f64,
@@ -64,18 +59,6 @@ pub struct PpoConfig {
     /// Threads that rows are divided among. Sums are made in their order, so that results depend on this number and not
     /// on the machine.
     pub threads: usize,
-}
-
-/// `[ppo.kl_settle]`: how [`PpoConfig::kl_target`] moves to another.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct KlSettle {
-    /// Samples of the run until which nothing changes.
-    pub from_samples: f64,
-    /// Samples from which on it is `target`; between the two it moves on a straight line of its logarithm.
-    pub to_samples: f64,
-    /// Mean KL divergence at the end.
-    pub target: f32,
 }
 
 /// Choices of [`PpoConfig::schedule`].
@@ -116,16 +99,14 @@ impl Default for PpoConfig {
             minibatch: 2048,
             learning_rate: 3e-4,
             schedule: RateSchedule::PerIteration,
-            kl_target: 0.025,
-            kl_settle: None,
+            kl_target: 0.025.into(),
             kl_band: 1.5,
             rate_factor: 1.3,
             min_learning_rate: 1e-5,
             max_learning_rate: 1e-2,
             gradient_norm: 1.0,
             advantage_normalization: AdvantageNormalization::Batch,
-            mirrored_share: 0.5,
-            mirrored_fade: None,
+            mirrored_share: 0.5.into(),
             critic_first: 0.0,
             symmetry_weight: 0.0,
             symmetry_share: 0.25,
@@ -135,17 +116,15 @@ impl Default for PpoConfig {
 }
 
 impl PpoConfig {
-    /// Whether any rows are seen mirrored.
+    /// Whether any rows are seen mirrored, at any time of the run.
     pub fn mirrors(&self) -> bool {
-        self.mirrored_share > 0.0 || self.symmetry_weight > 0.0
+        let some = self.mirrored_share.moves() || self.mirrored_share.now() > 0.0;
+        some || self.symmetry_weight > 0.0
     }
 
     /// Share of each minibatch that is mirrored after `samples`.
     pub fn mirrored_share_at(&self, samples: u64) -> f32 {
-        let rest = self.mirrored_fade.map_or(1.0, |[from, to]| {
-            ((to - samples as f64) / (to - from)).clamp(0.0, 1.0)
-        });
-        self.mirrored_share * rest as f32
+        self.mirrored_share.at(samples as f64)
     }
 
     /// Whether the critic alone learns after `samples`.
@@ -155,14 +134,11 @@ impl PpoConfig {
 
     /// Mean KL divergence that the rate is steered to after `samples`.
     pub fn kl_target_at(&self, samples: u64) -> f32 {
-        self.kl_settle.map_or(self.kl_target, |settle| {
-            let (from, to) = (settle.from_samples, settle.to_samples);
-            schedule::logarithmic(self.kl_target, settle.target, from, to, samples)
-        })
+        self.kl_target.at_logarithmic(samples as f64)
     }
 
     /// Refuses the first value that learning cannot work with.
-    pub fn validate(&self) -> Result<(), ConfigError> {
+    pub fn validate(&self) -> Checked {
         Check(Ok(()))
             .share("gamma", self.gamma)
             .share("lambda", self.lambda)
@@ -174,20 +150,7 @@ impl PpoConfig {
             .count("epochs", self.epochs, 1000)
             .count("minibatch", self.minibatch, 1 << 24)
             .positive("learning_rate", self.learning_rate)
-            .positive("kl_target", self.kl_target)
-            .positive(
-                "kl_settle.target",
-                self.kl_settle.map_or(1.0, |settle| settle.target),
-            )
-            .that(
-                self.kl_settle.is_none_or(|settle| {
-                    let (from, to) = (settle.from_samples, settle.to_samples);
-                    0.0 <= from && from < to && to.is_finite()
-                }),
-                "kl_settle.to_samples",
-                self.kl_settle.map_or(0.0, |settle| settle.to_samples),
-                "use more samples than from_samples, and that 0 or more",
-            )
+            .ramp("kl_target", &self.kl_target, Check::positive)
             .that(
                 self.kl_band >= 1.0,
                 "kl_band",
@@ -208,14 +171,7 @@ impl PpoConfig {
                 "use min_learning_rate or more",
             )
             .positive("gradient_norm", self.gradient_norm)
-            .share("mirrored_share", self.mirrored_share)
-            .that(
-                self.mirrored_fade
-                    .is_none_or(|[from, to]| 0.0 <= from && from < to && to.is_finite()),
-                "mirrored_fade",
-                format!("{:?}", self.mirrored_fade.unwrap_or_default()),
-                "use two rising numbers of samples, such as [1e6, 2e6]",
-            )
+            .ramp("mirrored_share", &self.mirrored_share, Check::share)
             .that(
                 self.critic_first >= 0.0 && self.critic_first.is_finite(),
                 "critic_first",

@@ -220,7 +220,7 @@ fn the_symmetry_loss_is_told_where_it_is_measured() {
     config.ppo.symmetry_weight = 1.0;
     for (mirrored_share, told) in [(0.0, true), (0.5, false)] {
         // Every other row mirrored: those of the quarter that would be lessons are among them.
-        config.ppo.mirrored_share = mirrored_share;
+        config.ppo.mirrored_share = mirrored_share.into();
         let mut learning = Learning::new(config.clone(), simple(), 11).expect("usable");
         let batch = batch(&learning, 0);
         let mut experts = |rows: &mut [f32]| rows.fill(0.1);

@@ -87,7 +87,7 @@ impl Bandit {
             observations: &self.observations,
             mirrored: &self.observations,
             mirrored_share: 0.0,
-            kl_target: config().ppo.kl_target,
+            kl_target: config().ppo.kl_target.now(),
             critic_alone: false,
             actions: &self.actions,
             means: &self.means,
@@ -237,7 +237,7 @@ fn the_rate_follows_the_divergence() {
 fn learned_exploration_shrinks_when_it_does_not_pay() {
     let mut config = config();
     config.exploration.kind = ExplorationKind::Learned;
-    config.exploration.initial_sigma = 0.5;
+    config.exploration.sigma = 0.5.into();
     config.exploration.waist_factor = 1.0;
     config.exploration.arm_factor = 1.0;
     let mut ppo = ppo(&config);

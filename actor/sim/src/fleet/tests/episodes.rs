@@ -3,20 +3,20 @@
 use super::*;
 use nalgebra::UnitQuaternion;
 use std::f32::consts::FRAC_PI_3;
+use vocabulary::Ramp;
 
 #[test]
 fn timeouts_are_staggered_and_then_a_full_episode_apart() {
     let task = TaskConfig {
-        episode_steps: 12,
         start: StartConfig {
-            reference_share: 0.0,
+            reference_share: 0.0.into(),
             ..StartConfig::default()
         },
         ..TaskConfig::default()
     };
     let count = |staggered: bool| {
         let task = TaskConfig {
-            staggered,
+            termination: of_steps(12, staggered),
             ..task.clone()
         };
         let mut fleet = fleet(&task, &RandomizationConfig::none(), 6, 2);
@@ -70,27 +70,28 @@ fn tells_causes(physics: Physics) {
     // Told to walk at 1 m/s: who stands is a fifth of it off after one step of a mean over 0.1 s, and 0.05 is allowed.
     let strict = TaskConfig {
         physics,
-        episode_steps: 1,
-        staggered: false,
         command: CommandConfig {
-            forward: [1.0, 1.0],
+            forward: [1.0, 1.0].into(),
             ..CommandConfig::default()
         },
         start: StartConfig {
-            reference_share: 0.0,
+            reference_share: 0.0.into(),
             ..StartConfig::default()
         },
-        stray: Some(StrayConfig {
-            share: 0.0,
-            least: 0.05,
-            seconds: 0.1,
-            grace: 0.0,
-            ..StrayConfig::default()
-        }),
+        termination: TerminationConfig {
+            stray: Some(StrayConfig {
+                share: 0.0.into(),
+                least: 0.05.into(),
+                seconds: 0.1,
+                grace: 0.0,
+                ..StrayConfig::default()
+            }),
+            ..of_steps(1, false)
+        },
         ..TaskConfig::default()
     };
     let lenient = TaskConfig {
-        stray: None,
+        termination: of_steps(1, false),
         ..strict.clone()
     };
     let mut leaning = RobotState::standing();
@@ -122,8 +123,8 @@ fn starts_match_their_clip_in_the_share_asked_for() {
     for share in [0.0, 1.0] {
         let task = TaskConfig {
             command: CommandConfig {
-                forward: [1.0, 1.2],
-                matched_share: share,
+                forward: [1.0, 1.2].into(),
+                matched_share: Ramp::Constant(share),
                 ..CommandConfig::default()
             },
             ..TaskConfig::default()

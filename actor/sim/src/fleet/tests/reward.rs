@@ -1,7 +1,10 @@
 //! What a fleet writes as the task's reward.
 
 use super::*;
-use crate::stance::SingleStanceConfig;
+use crate::feet::Footing;
+use crate::gate::GateConfig;
+use crate::gate::single_stance::SingleStance;
+use crate::moment::{self, Moment};
 use g1::gait::CONTACT_FORCE;
 use g1::kinematics;
 use g1::links::LEFT_FOOT;
@@ -11,14 +14,26 @@ fn ahead(physics: Physics) -> TaskConfig {
     TaskConfig {
         physics,
         command: CommandConfig {
-            forward: [0.5, 0.5],
+            forward: [0.5, 0.5].into(),
             pure_share: 1.0,
-            standing_share: 0.0,
             ..CommandConfig::default()
         },
-        fall_height: 0.0,
-        fall_upright: -1.0,
+        termination: TerminationConfig {
+            fall: FallConfig {
+                height: 0.0,
+                upright: -1.0,
+            },
+            ..TerminationConfig::default()
+        },
         ..TaskConfig::default()
+    }
+}
+
+/// What standing on one foot leaves, beside uprightness.
+fn long_steps(pay: SingleStance) -> GateConfig {
+    GateConfig {
+        single_stance: Some(pay),
+        ..GateConfig::default()
     }
 }
 
@@ -32,8 +47,14 @@ fn left_foot_up() -> [f32; ACTION] {
 #[test]
 fn reward_and_error_are_those_of_the_state_reached_under_the_old_command() {
     let task = TaskConfig {
-        kernel: 2.0,
-        yaw_rate_weight: 0.25,
+        reward: RewardConfig {
+            track: Some(Track {
+                kernel: 2.0.into(),
+                yaw_rate: 0.25.into(),
+                ..Track::default()
+            }),
+            ..RewardConfig::default()
+        },
         command: CommandConfig {
             resample_seconds: [0.02, 0.02], // a new command every step
             ..CommandConfig::default()
@@ -48,14 +69,47 @@ fn reward_and_error_are_those_of_the_state_reached_under_the_old_command() {
         let state = fleet.state(0);
         assert_eq!(
             out.task_rewards[0],
-            task.reward(&command, state, out.energies[0])
+            task.pay(&Moment::new(
+                &command,
+                state,
+                out.energies[0],
+                &Footing::default()
+            ))
         );
         assert_eq!(
             out.tracking_errors[0],
-            crate::task::tracking_error(&command, state)
+            moment::velocity_error(&command, state)
         );
         assert_ne!(fleet.command(0), command);
     }
+}
+
+#[test]
+fn terms_are_told_since_they_were_asked_for_and_broken_steps_are_none() {
+    let task = ahead(Physics::Batched);
+    let mut fleet = fleet(&task, &RandomizationConfig::none(), 2, 9);
+    assert_eq!(fleet.take_terms(), []);
+    let mut asked = [0.0; 2 * ACTION];
+    // The second robot's first step breaks: it pays nothing, and no term was looked at.
+    asked[ACTION] = f32::NAN;
+    let first = step(&mut fleet, &asked);
+    asked[ACTION] = 0.0;
+    let second = step(&mut fleet, &asked);
+    let told = fleet.take_terms();
+    assert_eq!([told[0].0, told[1].0], ["reward/track", "gate/upright"]);
+    let rewards = [
+        first.task_rewards[0],
+        second.task_rewards[0],
+        second.task_rewards[1],
+    ];
+    assert_eq!(first.task_rewards[1], 0.0);
+    // Robots that stand are upright but for a thousandth, so that the product of the means is the mean of the products.
+    let mean = rewards.iter().sum::<f32>() / 3.0;
+    assert!(
+        (told[0].1 * told[1].1 - mean).abs() < 1e-4,
+        "{told:?} {mean}"
+    );
+    assert_eq!(fleet.take_terms(), []);
 }
 
 #[test]
@@ -63,10 +117,10 @@ fn the_share_of_long_steps_is_paid_to_who_stands_on_one_foot() {
     for physics in ENGINES {
         let plain = ahead(physics);
         let paying = TaskConfig {
-            single_stance: Some(SingleStanceConfig {
-                share: 0.5,
+            gate: long_steps(SingleStance {
+                share: 0.5.into(),
                 seconds: 0.1,
-                ..SingleStanceConfig::default()
+                ..SingleStance::default()
             }),
             ..plain.clone()
         };
@@ -110,21 +164,23 @@ fn a_foot_is_paid_by_its_own_height_in_the_world() {
     for physics in ENGINES {
         let lift = 0.03;
         let task = TaskConfig {
-            single_stance: Some(SingleStanceConfig {
-                share: 0.5,
+            gate: long_steps(SingleStance {
+                share: 0.5.into(),
                 seconds: 0.1, // five to ten steps pay all
                 lift: Some(lift),
-                ..SingleStanceConfig::default()
+                ..SingleStance::default()
             }),
             ..ahead(physics)
         };
         let mut fleet = fleet(&task, &RandomizationConfig::none(), 1, 9);
+        let feet = Footing::default();
         let (mut one_foot, mut high) = (0, 0);
         for _ in 0..25 {
             let command = fleet.command(0);
             let out = step(&mut fleet, &left_foot_up());
             let state = fleet.state(0);
-            let obeys = task.reward(&command, state, out.energies[0]);
+            let moment = Moment::new(&command, state, out.energies[0], &feet);
+            let obeys = ahead(physics).pay(&moment);
             let [left, right] = [0, 1].map(|foot| out.foot_forces[foot] > CONTACT_FORCE);
             let bodies = kinematics::forward_state(state);
             let height = kinematics::lowest_sole_point(&bodies, LEFT_FOOT);

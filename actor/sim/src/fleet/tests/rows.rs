@@ -79,8 +79,7 @@ fn observations_show_the_command_and_the_previous_action() {
 #[test]
 fn the_last_step_is_told_also_where_an_episode_ended() {
     let (mut task, _) = eventful();
-    task.episode_steps = 3;
-    task.staggered = false;
+    task.termination = of_steps(3, false);
     let mut fleet = fleet(&task, &RandomizationConfig::none(), 2, 4);
     assert_eq!(fleet.last_step(1).state, *fleet.state(1));
     assert_eq!(fleet.last_step(1).exertion, Exertion::default());

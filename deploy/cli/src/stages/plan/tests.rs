@@ -16,7 +16,11 @@ fn those_of_ours_can_all_be_run() {
 #[test]
 fn a_file_of_stages_has_presets_beside_it_and_values_of_its_own() {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("mine.toml"), "[task]\nkernel = 5.0\n").unwrap();
+    std::fs::write(
+        folder.path().join("mine.toml"),
+        "[task.reward.track]\nkernel = 5.0\n",
+    )
+    .unwrap();
     let path = folder.path().join("two.toml");
     let text = "title = \"Two\"\n\
             [[stages]]\nname = \"smoke\"\niterations = 3\n\
@@ -39,7 +43,7 @@ fn a_file_of_stages_has_presets_beside_it_and_values_of_its_own() {
         [number(0, "run.iterations"), number(1, "run.iterations")],
         [3.0, 4.0]
     );
-    assert_eq!(number(1, "task.kernel"), 5.0);
+    assert_eq!(number(1, "task.reward.track.kernel"), 5.0);
     assert_eq!([number(0, "run.seed"), number(1, "run.seed")], [7.0, 7.0]);
     // What was typed goes before what the file says.
     assert_eq!(number(1, "ppo.epochs"), 3.0);
@@ -47,7 +51,7 @@ fn a_file_of_stages_has_presets_beside_it_and_values_of_its_own() {
     let mut theirs = Config::parse(&plan.stages[1].config.to_toml(), "theirs").unwrap();
     theirs.put("run.from", "/somewhere", "theirs");
     assert_eq!(plan.stages[1].differs_from(&theirs), None);
-    theirs.put("task.kernel", 6.0, "theirs");
+    theirs.put("task.reward.track.kernel", 6.0, "theirs");
     let differs = plan.stages[1].differs_from(&theirs).unwrap();
     assert_eq!(
         differs,

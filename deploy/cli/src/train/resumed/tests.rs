@@ -15,8 +15,8 @@ const OPTIONS: &str = "
 from = '/a'
 [ppo]
 value_clip = 0.2
-kl_settle = { from_samples = 1.0, to_samples = 2.0, target = 0.01 }
-mirrored_fade = [1e6, 2e6]
+kl_target = { from = 0.03, to = 0.01, samples = [1.0, 2.0] }
+mirrored_share = { from = 0.5, to = 0.0, samples = [1e6, 2e6] }
 [discriminator]
 command_blur = [0.1, 0.1, 0.1]
 ";

@@ -1,22 +1,25 @@
 //! Standing on one foot at a time, or running: long steps pay more than many short ones.
 //!
-//! Separate because it is a measure with a memory, and a wish of its own: Eq. 14 asks for a velocity,
-//! and small quick steps, a shuffle or a hop obey it as well as a walk. The discriminator looks at a
-//! tenth of a second; how long a foot stays in the air is beyond it.
+//! A wish of its own: Eq. 14 asks for a velocity, and small quick steps, a shuffle or a hop obey it as well as a walk. The
+//! discriminator looks at a tenth of a second; how long a foot stays in the air is beyond it.
 
-use crate::config::{self, Invalid};
+use crate::feet::{Foot, Footing};
 use crate::kind::Kind;
+use crate::moment::Moment;
+use crate::terms::Term;
 use crate::world::CONTROL_STEP;
-use g1::gait::CONTACT_FORCE;
 use serde::{Deserialize, Serialize};
+use vocabulary::{Checked, Ramp, invalid};
 
 /// What standing on one foot pays. As Isaac Lab's `feet_air_time_positive_biped`, which adds a reward;
 /// here it is a factor, so that the task reward stays between 0 and 1, where Eq. 9 and Eq. 12 expect it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct SingleStanceConfig {
+pub struct SingleStance {
+    /// The power that the factor is raised to. Default 1.
+    pub weight: Ramp<f32>,
     /// Share of the task reward that is paid for it. Default 0.3.
-    pub share: f32,
+    pub share: Ramp<f32>,
     /// Time for which one foot has to stand and the other to swing until all of the share is paid, s.
     /// Default 0.4, nearly half of a stride of the reference gait at 1 m/s.
     pub seconds: f32,
@@ -64,17 +67,18 @@ fn is_one(power: &f32) -> bool {
     *power == 1.0
 }
 
-/// Flight for which all of [`SingleStanceConfig::flight`] is paid, s: an eighth of a step at three steps a second. Twice
+/// Flight for which all of [`SingleStance::flight`] is paid, s: an eighth of a step at three steps a second. Twice
 /// a control step: what a foot touches in part of one counts as touched.
 const FLIGHT: f32 = 0.04;
 
-/// Least [`SingleStanceConfig::lift`], m: with less, hardly any step would be low enough to be paid.
+/// Least [`SingleStance::lift`], m: with less, hardly any step would be low enough to be paid.
 const LEAST_LIFT: f32 = 0.01;
 
-impl Default for SingleStanceConfig {
+impl Default for SingleStance {
     fn default() -> Self {
         Self {
-            share: 0.3,
+            weight: 1.0.into(),
+            share: 0.3.into(),
             seconds: 0.4,
             power: 1.0,
             aside_share: None,
@@ -88,43 +92,7 @@ impl Default for SingleStanceConfig {
     }
 }
 
-impl SingleStanceConfig {
-    /// Checks every field; names the first bad one, its value and a remedy.
-    pub fn validate(&self) -> Result<(), Invalid> {
-        config::share("single_stance.share", self.share)?;
-        config::at_least("single_stance.seconds", self.seconds, CONTROL_STEP)?;
-        config::at_least("single_stance.power", self.power, 1.0)?;
-        if let Some(share) = self.aside_share {
-            config::share("single_stance.aside_share", share)?;
-        }
-        config::share("single_stance.flight", self.flight)?;
-        config::require(
-            self.flight == 0.0 || self.run_from.is_some(),
-            "single_stance.flight",
-            self.flight,
-            "say with run_from from which speed on it is paid",
-        )?;
-        if let Some(share) = self.run_share {
-            config::share("single_stance.run_share", share)?;
-            config::require(
-                self.run_from.is_some(),
-                "single_stance.run_share",
-                share,
-                "say with run_from from which speed on it counts",
-            )?;
-        }
-        if let Some(height) = self.lift {
-            config::at_least("single_stance.lift", height, LEAST_LIFT)?;
-        }
-        if let Some(speed) = self.walk_to {
-            config::at_least("single_stance.walk_to", speed, 0.0)?;
-        }
-        config::share("single_stance.standing", self.standing)?;
-        self.run_from.map_or(Ok(()), |speed| {
-            config::at_least("single_stance.run_from", speed, 0.5)
-        })
-    }
-
+impl SingleStance {
     /// Factor of the task reward, 1 − s·(1 − pⁿ) with p = min(t/T, 1) up to t = 2·T and 0 beyond. t is how long the
     /// feet have been as they are, the shorter of the two, if just one of them stands, and 0 otherwise. s may be another
     /// of any way but straight ahead. With `lift` l, pⁿ is times min(max(2 − h/l, 0), 1), h the height of the swinging
@@ -159,8 +127,8 @@ impl SingleStanceConfig {
         let paid = if share > 2.0 { 0.0 } else { share.min(1.0) };
         if !runs {
             let share = match Kind::of(*command) {
-                Kind::Forward => self.share,
-                _ => self.aside_share.unwrap_or(self.share),
+                Kind::Forward => self.share.now(),
+                _ => self.aside_share.unwrap_or(self.share.now()),
             };
             let low = match (self.lift, feet.swinging()) {
                 (Some(lift), Some(foot)) => (2.0 - height(foot) / lift).clamp(0.0, 1.0),
@@ -169,74 +137,57 @@ impl SingleStanceConfig {
             return 1.0 - share * (1.0 - low * paid.powf(self.power));
         }
         let paid = paid + self.flight * ((feet.flight() / FLIGHT).min(1.0) - paid);
-        1.0 - self.run_share.unwrap_or(self.share) * (1.0 - paid)
+        1.0 - self.run_share.unwrap_or(self.share.now()) * (1.0 - paid)
     }
 }
 
-/// A foot.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Foot {
-    Left,
-    Right,
-}
+impl Term for SingleStance {
+    fn weight(&self) -> &Ramp<f32> {
+        &self.weight
+    }
 
-/// Which feet stand, and for how long.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Footing {
-    /// Of the left and the right foot.
-    down: [bool; 2],
-    /// Control steps since each came down or was lifted, or since the episode began.
-    steps: [u32; 2],
-}
+    fn value(&self, moment: &Moment<'_>) -> f32 {
+        let height = |foot: Foot| foot.height(moment.state);
+        self.factor(moment.command, moment.feet, height)
+    }
 
-impl Footing {
-    /// Takes one more control step in: the vertical forces on the left and the right sole, N.
-    pub(crate) fn step(&mut self, forces: [f32; 2]) {
-        for (foot, force) in forces.into_iter().enumerate() {
-            let down = force > CONTACT_FORCE;
-            if down != self.down[foot] {
-                self.steps[foot] = 0;
-            }
-            self.down[foot] = down;
-            self.steps[foot] += 1;
+    fn set(&mut self, samples: f64) {
+        self.weight.set(samples);
+        self.share.set(samples);
+    }
+
+    fn validate(&self) -> Checked {
+        self.share.check("share", invalid::share)?;
+        invalid::at_least("seconds", self.seconds, CONTROL_STEP)?;
+        invalid::at_least("power", self.power, 1.0)?;
+        if let Some(share) = self.aside_share {
+            invalid::share("aside_share", share)?;
         }
-    }
-
-    /// The foot in the air while the other stands; none with both or none on the ground.
-    fn swinging(&self) -> Option<Foot> {
-        match self.down {
-            [false, true] => Some(Foot::Left),
-            [true, false] => Some(Foot::Right),
-            _ => None,
+        invalid::share("flight", self.flight)?;
+        invalid::require(
+            self.flight == 0.0 || self.run_from.is_some(),
+            "flight",
+            self.flight,
+            "say with run_from from which speed on it is paid",
+        )?;
+        if let Some(share) = self.run_share {
+            invalid::share("run_share", share)?;
+            invalid::require(
+                self.run_from.is_some(),
+                "run_share",
+                share,
+                "say with run_from from which speed on it counts",
+            )?;
         }
-    }
-
-    /// How long one foot has stood and the other has not, the shorter of the two, s; 0 with both or none
-    /// on the ground.
-    fn single_stance(&self) -> f32 {
-        if self.down[0] == self.down[1] {
-            return 0.0;
+        if let Some(height) = self.lift {
+            invalid::at_least("lift", height, LEAST_LIFT)?;
         }
-        self.steps[0].min(self.steps[1]) as f32 * CONTROL_STEP
-    }
-
-    /// How long the foot that was lifted first is in the air, s; 0 with both on the ground.
-    fn swing(&self) -> f32 {
-        let aloft = |foot: usize| if self.down[foot] { 0 } else { self.steps[foot] };
-        aloft(0).max(aloft(1)) as f32 * CONTROL_STEP
-    }
-
-    /// How long both feet have been in the air, or were before the one that stands came down, s; 0 with
-    /// both on the ground, or if the other was lifted only after that.
-    fn flight(&self) -> f32 {
-        let [left, right] = self.steps;
-        let steps = match self.down {
-            [false, false] => left.min(right),
-            [true, false] => right.saturating_sub(left),
-            [false, true] => left.saturating_sub(right),
-            [true, true] => 0,
-        };
-        steps as f32 * CONTROL_STEP
+        if let Some(speed) = self.walk_to {
+            invalid::at_least("walk_to", speed, 0.0)?;
+        }
+        invalid::share("standing", self.standing)?;
+        self.run_from
+            .map_or(Ok(()), |speed| invalid::at_least("run_from", speed, 0.5))
     }
 }
 

@@ -19,7 +19,7 @@ fn factor(steps: &[([f32; 2], usize)]) -> f32 {
     for &(forces, count) in steps {
         (0..count).for_each(|_| feet.step(forces));
     }
-    SingleStanceConfig::default().factor(&AHEAD, &feet, flat)
+    SingleStance::default().factor(&AHEAD, &feet, flat)
 }
 
 #[test]
@@ -37,10 +37,10 @@ fn long_steps_pay_by_hand() {
 
 #[test]
 fn pay_may_grow_with_the_square_but_not_that_of_a_run() {
-    let config = SingleStanceConfig {
+    let config = SingleStance {
         power: 2.0,
         run_from: Some(1.8),
-        ..SingleStanceConfig::default()
+        ..SingleStance::default()
     };
     let mut feet = Footing::default();
     (0..10).for_each(|_| feet.step(LEFT));
@@ -55,11 +55,11 @@ fn pay_may_grow_with_the_square_but_not_that_of_a_run() {
 #[test]
 fn ways_aside_back_and_on_the_spot_may_have_a_share_of_their_own() {
     let feet = Footing::default();
-    let config = |aside_share| SingleStanceConfig {
+    let config = |aside_share| SingleStance {
         aside_share,
         run_from: Some(1.8),
         run_share: Some(0.1),
-        ..SingleStanceConfig::default()
+        ..SingleStance::default()
     };
     let others = [
         [-0.5, 0.0, 0.0],
@@ -78,10 +78,10 @@ fn ways_aside_back_and_on_the_spot_may_have_a_share_of_their_own() {
 
 #[test]
 fn who_lifts_a_foot_too_high_is_paid_less_for_the_step_by_hand() {
-    let config = SingleStanceConfig {
+    let config = SingleStance {
         lift: Some(0.08),
         run_from: Some(1.8),
-        ..SingleStanceConfig::default()
+        ..SingleStance::default()
     };
     let mut feet = Footing::default();
     (0..10).for_each(|_| feet.step(LEFT));
@@ -102,9 +102,9 @@ fn who_lifts_a_foot_too_high_is_paid_less_for_the_step_by_hand() {
 
 #[test]
 fn a_run_is_paid_for_its_flight_too() {
-    let config = SingleStanceConfig {
+    let config = SingleStance {
         run_from: Some(1.8),
-        ..SingleStanceConfig::default()
+        ..SingleStance::default()
     };
     let mut feet = Footing::default();
     let mut step = |forces, count| {
@@ -125,11 +125,11 @@ fn a_run_is_paid_for_its_flight_too() {
 
 #[test]
 fn flight_pays_until_the_next_foot_is_lifted_and_a_walk_has_none() {
-    let config = SingleStanceConfig {
-        share: 1.0,
+    let config = SingleStance {
+        share: 1.0.into(),
         run_from: Some(1.8),
         flight: 1.0,
-        ..SingleStanceConfig::default()
+        ..SingleStance::default()
     };
     let mut feet = Footing::default();
     let mut paid = |forces, count| {
@@ -153,10 +153,10 @@ fn flight_pays_until_the_next_foot_is_lifted_and_a_walk_has_none() {
 
 #[test]
 fn a_part_of_a_run_is_paid_for_flight() {
-    let config = SingleStanceConfig {
+    let config = SingleStance {
         run_from: Some(1.8),
         flight: 0.5,
-        ..SingleStanceConfig::default()
+        ..SingleStance::default()
     };
     let mut feet = Footing::default();
     (0..10).for_each(|_| feet.step(LEFT));
@@ -167,11 +167,11 @@ fn a_part_of_a_run_is_paid_for_flight() {
 
 #[test]
 fn beyond_a_walk_and_below_a_run_only_obeying_is_paid() {
-    let config = SingleStanceConfig {
+    let config = SingleStance {
         walk_to: Some(1.2),
         run_from: Some(1.8),
         run_share: Some(0.1),
-        ..SingleStanceConfig::default()
+        ..SingleStance::default()
     };
     // Both feet down: no long step is paid for, and neither is flight.
     let feet = Footing::default();
@@ -182,16 +182,16 @@ fn beyond_a_walk_and_below_a_run_only_obeying_is_paid() {
 #[test]
 fn who_is_told_to_stand_is_not_asked_to_lift_a_foot() {
     let feet = Footing::default();
-    let config = SingleStanceConfig::default();
+    let config = SingleStance::default();
     assert_eq!(config.factor(&[0.0; 3], &feet, flat), 1.0);
     assert_eq!(config.factor(&[0.0, 0.0, 0.5], &feet, flat), 0.7);
 }
 
 #[test]
 fn who_is_told_to_stand_may_be_asked_to_keep_both_feet_down() {
-    let config = SingleStanceConfig {
+    let config = SingleStance {
         standing: 0.4,
-        ..SingleStanceConfig::default()
+        ..SingleStance::default()
     };
     let mut feet = Footing::default();
     feet.step(BOTH);
@@ -206,55 +206,52 @@ fn who_is_told_to_stand_may_be_asked_to_keep_both_feet_down() {
 #[test]
 fn shares_beyond_all_and_times_of_nothing_are_refused() {
     let refused = |share, seconds| {
-        let config = SingleStanceConfig {
-            share,
+        let config = SingleStance {
+            share: Ramp::Constant(share),
             seconds,
             run_from: Some(0.2),
-            ..SingleStanceConfig::default()
+            ..SingleStance::default()
         };
         config.validate().unwrap_err().to_string()
     };
-    assert!(refused(1.5, 0.4).contains("single_stance.share = 1.5"));
-    assert!(refused(0.5, 0.0).contains("single_stance.seconds = 0"));
-    assert!(refused(0.5, 0.4).contains("single_stance.run_from = 0.2"));
-    let unpaid = SingleStanceConfig {
+    assert!(refused(1.5, 0.4).contains("share = 1.5"));
+    assert!(refused(0.5, 0.0).contains("seconds = 0"));
+    assert!(refused(0.5, 0.4).contains("run_from = 0.2"));
+    let unpaid = SingleStance {
         flight: 0.5,
-        ..SingleStanceConfig::default()
+        ..SingleStance::default()
     };
     let refused = unpaid.validate().unwrap_err().to_string();
-    assert!(refused.contains("single_stance.flight = 0.5"), "{refused}");
-    let never = SingleStanceConfig {
+    assert!(refused.contains("flight = 0.5"), "{refused}");
+    let never = SingleStance {
         run_share: Some(0.2),
-        ..SingleStanceConfig::default()
+        ..SingleStance::default()
     };
     let refused = never.validate().unwrap_err().to_string();
     assert!(refused.contains("run_share = 0.2"), "{refused}");
-    let root = SingleStanceConfig {
+    let root = SingleStance {
         power: 0.5,
-        ..SingleStanceConfig::default()
+        ..SingleStance::default()
     };
     let refused = root.validate().unwrap_err().to_string();
-    assert!(refused.contains("single_stance.power = 0.5"), "{refused}");
-    let aside = SingleStanceConfig {
+    assert!(refused.contains("power = 0.5"), "{refused}");
+    let aside = SingleStance {
         aside_share: Some(1.2),
-        ..SingleStanceConfig::default()
+        ..SingleStance::default()
     };
     let refused = aside.validate().unwrap_err().to_string();
-    assert!(
-        refused.contains("single_stance.aside_share = 1.2"),
-        "{refused}"
-    );
-    let flat_footed = SingleStanceConfig {
+    assert!(refused.contains("aside_share = 1.2"), "{refused}");
+    let flat_footed = SingleStance {
         lift: Some(0.0),
-        ..SingleStanceConfig::default()
+        ..SingleStance::default()
     };
     let refused = flat_footed.validate().unwrap_err().to_string();
-    assert!(refused.contains("single_stance.lift = 0"), "{refused}");
-    let backward = SingleStanceConfig {
+    assert!(refused.contains("lift = 0"), "{refused}");
+    let backward = SingleStance {
         walk_to: Some(-1.0),
-        ..SingleStanceConfig::default()
+        ..SingleStance::default()
     };
     let refused = backward.validate().unwrap_err().to_string();
     assert!(refused.contains("walk_to = -1"), "{refused}");
-    SingleStanceConfig::default().validate().unwrap();
+    SingleStance::default().validate().unwrap();
 }

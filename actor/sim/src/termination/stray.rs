@@ -1,23 +1,23 @@
-//! Straying: going on at a velocity that was not asked for ends an episode, as a fall does.
+//! Straying: going on at a velocity that was not asked for.
 //!
 //! Separate because it is a rule with a memory. A discriminator rewards whatever looks human, and
 //! standing does. As long as style weighs most, a robot that stands, or strolls at one speed
 //! whatever it is told, earns nearly as much as one that obeys; and it never falls. An end after a
 //! second or two costs it the rest of the episode, whatever the weights are.
 
-use crate::config::{self, Invalid};
 use crate::world::CONTROL_STEP;
 use g1::RobotState;
 use serde::{Deserialize, Serialize};
+use vocabulary::{Checked, Ramp, invalid};
 
 /// When a robot has strayed from its command.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct StrayConfig {
     /// Greatest error of the mean velocity as a share of the commanded speed. Default 0.5.
-    pub share: f32,
+    pub share: Ramp<f32>,
     /// Error that is always allowed, m/s. Default 0.25: slow commands, and standing.
-    pub least: f32,
+    pub least: Ramp<f32>,
     /// Time over which the velocity is averaged (exponentially), s. Default 2.
     pub seconds: f32,
     /// Time after a start or a new command in which nothing is counted, s. Default 0.3. With 1
@@ -41,8 +41,8 @@ pub struct StrayConfig {
 impl Default for StrayConfig {
     fn default() -> Self {
         Self {
-            share: 0.5,
-            least: 0.25,
+            share: 0.5.into(),
+            least: 0.25.into(),
             seconds: 2.0,
             grace: 0.3,
             grace_on_course: None,
@@ -53,16 +53,23 @@ impl Default for StrayConfig {
 }
 
 impl StrayConfig {
-    /// Checks every field; names the first bad one, its value and a remedy.
-    pub fn validate(&self) -> Result<(), Invalid> {
-        config::at_least("stray.share", self.share, 0.0)?;
-        config::at_least("stray.least", self.least, 0.05)?;
-        config::at_least("stray.seconds", self.seconds, 0.1)?;
-        config::at_least("stray.grace", self.grace, 0.0)?;
+    /// Holds all that moves where it is after a number of samples.
+    pub(crate) fn set(&mut self, samples: f64) {
+        self.share.set(samples);
+        self.least.set(samples);
+    }
+
+    /// Checks every parameter; names the first bad one.
+    pub(crate) fn validate(&self) -> Checked {
+        let from = |least| move |path: &str, value: f32| invalid::at_least(path, value, least);
+        self.share.check("share", from(0.0))?;
+        self.least.check("least", from(0.05))?;
+        invalid::at_least("seconds", self.seconds, 0.1)?;
+        invalid::at_least("grace", self.grace, 0.0)?;
         if let Some(grace) = self.grace_on_course {
-            config::at_least("stray.grace_on_course", grace, 0.0)?;
+            invalid::at_least("grace_on_course", grace, 0.0)?;
         }
-        config::at_least("stray.yaw_rate_weight", self.yaw_rate_weight, 0.0)
+        invalid::at_least("yaw_rate_weight", self.yaw_rate_weight, 0.0)
     }
 
     /// Length of a velocity or of the error of one: √(v_x² + v_y² + w·ω²), m/s.
@@ -73,7 +80,9 @@ impl StrayConfig {
 
     /// Greatest length of the error under a command, m/s.
     fn allowed(&self, command: &[f32; 3]) -> f32 {
-        self.least.max(self.share * self.length(*command))
+        self.least
+            .now()
+            .max(self.share.now() * self.length(*command))
     }
 }
 

@@ -1,0 +1,82 @@
+//! Keys that are spelt otherwise now: an older file is refused with the new spelling.
+
+/// Section and key as they were, and how the same is said now.
+const MOVED: [(&str, &str, &str); 19] = [
+    ("task", "kernel", "task.reward.track.kernel = 2.0"),
+    ("task", "wide_kernel", "task.reward.track_wide.kernel = 2.0"),
+    (
+        "task",
+        "yaw_rate_weight",
+        "task.reward.track.yaw_rate = 0.5",
+    ),
+    ("task", "effort_weight", "task.gate.effort.weight = 0.02"),
+    (
+        "task",
+        "single_stance",
+        "task.gate.single_stance = { share = 0.5 }",
+    ),
+    ("task", "fall_height", "task.termination.fall.height = 0.5"),
+    (
+        "task",
+        "fall_upright",
+        "task.termination.fall.upright = 0.6",
+    ),
+    (
+        "task",
+        "episode_steps",
+        "task.termination.time_out.steps = 300",
+    ),
+    (
+        "task",
+        "staggered",
+        "task.termination.time_out.staggered = false",
+    ),
+    ("task", "stray", "task.termination.stray = { share = 0.4 }"),
+    (
+        "task",
+        "curriculum",
+        "task.reward.track.kernel = { from = 2.0, to = 4.0, samples = [1.5e6, 2.1e6] }",
+    ),
+    ("exploration", "initial_sigma", SIGMA),
+    ("exploration", "final_sigma", SIGMA),
+    ("exploration", "hold_samples", SIGMA),
+    ("exploration", "final_samples", SIGMA),
+    (
+        "ppo",
+        "kl_settle",
+        "ppo.kl_target = { from = 0.03, to = 0.003, samples = [8e6, 60e6] }",
+    ),
+    (
+        "ppo",
+        "mirrored_fade",
+        "ppo.mirrored_share = { from = 0.5, to = 0.0, samples = [1e6, 2e6] }",
+    ),
+    ("randomization", "from_samples", STRENGTH),
+    ("randomization", "to_samples", STRENGTH),
+];
+
+const SIGMA: &str = "exploration.sigma = { from = 0.6, to = 0.3, samples = [1e6, 3e6] }";
+const STRENGTH: &str = "randomization.strength = { from = 0.0, to = 1.0, samples = [0.0, 3e6] }";
+
+/// The keys that moved, with an example of how each is said now.
+pub fn moved() -> impl Iterator<Item = (String, &'static str)> {
+    MOVED
+        .iter()
+        .map(|(section, key, now)| (format!("{section}.{key}"), *now))
+}
+
+/// How a key of an older file is said now; none if it never was one.
+pub(super) fn remedy(section: &str, key: &str) -> Option<String> {
+    let given = format!("{section}.{key}");
+    let inside = |old: &str| {
+        given
+            .strip_prefix(old)
+            .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+    };
+    let (old, now) = moved().find(|(old, _)| inside(old))?;
+    let moves = match &*old {
+        "task.curriculum" => "what moves over the samples says so itself",
+        _ => "it is spelt otherwise now",
+    };
+    Some(format!("{moves}, as in {now}"))
+}
