@@ -60,9 +60,17 @@ fn limit_memory() {
     setrlimit(Resource::As, limit).expect("a lower limit");
 }
 
-/// One clear error: said in words that name something, on lines that are not a screen long.
+/// Longest error: half of it is what a parser may quote, the rest paths and remedies.
+const LONGEST: usize = 2 * wording::SAID;
+
+/// One clear error: said in one line that names something, is not a screen long and moves no cursor.
 fn assert_clear(error: &(dyn std::error::Error + 'static)) {
     let words = error.to_string();
     assert!(words.len() > 8, "{words:?} says nothing");
-    assert!(words.len() < 20_000, "{} bytes of error", words.len());
+    let length = words.chars().count();
+    assert!(
+        length < LONGEST,
+        "{length} characters of error: {words:.2000}"
+    );
+    assert!(!words.contains(char::is_control), "{words:?}");
 }

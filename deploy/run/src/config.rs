@@ -35,7 +35,7 @@ impl Config {
     pub fn parse(text: &str, origin: &str) -> Result<Self, ConfigError> {
         let table: Table = toml::from_str(text).map_err(|error| ConfigError::Syntax {
             origin: origin.to_owned(),
-            message: error.to_string().trim_end().to_owned(),
+            message: wording::refusal(text, error.span(), error.message()),
         })?;
         let mut config = Self {
             table,
@@ -47,11 +47,18 @@ impl Config {
 
     /// Reads a TOML file.
     pub fn read(path: &Path) -> Result<Self, ConfigError> {
-        let text = std::fs::read_to_string(path).map_err(|source| ConfigError::Read {
+        let bytes = std::fs::read(path).map_err(|source| ConfigError::Read {
             path: path.to_owned(),
             source,
         })?;
-        Self::parse(&text, &path.display().to_string())
+        let origin = path.display().to_string();
+        match wording::text(bytes) {
+            Ok(text) => Self::parse(&text, &origin),
+            Err(foreign) => Err(ConfigError::Syntax {
+                origin,
+                message: foreign.to_string(),
+            }),
+        }
     }
 
     /// Lays `over` on top: its values win, what it does not mention stays.
@@ -69,7 +76,11 @@ impl Config {
         let assignment = assignment::parse(given).map_err(refused)?;
         let (path, value) = (assignment.path, assignment.value);
         assignment::put(&mut self.table, &path, value.clone()).map_err(refused)?;
-        self.remark(&path.join("."), &value, &format!("--set {given}"));
+        self.remark(
+            &path.join("."),
+            &value,
+            &format!("--set {}", wording::line(given)),
+        );
         Ok(())
     }
 
@@ -306,10 +317,7 @@ impl Config {
         }
         let text = value.map_or_else(|| "(none)".to_owned(), Value::to_string);
         // A whole list of clips would bury the message.
-        match text.char_indices().nth(60) {
-            Some((end, _)) => format!("{}…", &text[..end]),
-            None => text,
-        }
+        wording::line(&text)
     }
 
     /// Forgets what was known of `path` and below, and marks the new value.

@@ -28,15 +28,14 @@ pub enum MetricsError {
         source: io::Error,
     },
     /// A line before the last is no record: the file was edited or damaged.
-    #[error("{}, line {line}: not a record of metrics", path.display())]
+    #[error("{}, line {line}: not a record of metrics: {}", path.display(), wording::said(said))]
     Malformed {
         /// The file.
         path: PathBuf,
         /// Counted from 1.
         line: usize,
         /// What the parser said.
-        #[source]
-        source: serde_json::Error,
+        said: String,
     },
 }
 
@@ -140,10 +139,10 @@ pub fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, MetricsError> {
     lines(&bytes)
         .enumerate()
         .map(|(index, line)| {
-            serde_json::from_slice(line).map_err(|source| MetricsError::Malformed {
+            serde_json::from_slice(line).map_err(|error| MetricsError::Malformed {
                 path: path.to_owned(),
                 line: index + 1,
-                source,
+                said: error.to_string(),
             })
         })
         .collect()
@@ -163,10 +162,10 @@ pub fn truncate_after(path: &Path, iteration: u64) -> Result<(), MetricsError> {
     let mut kept = Vec::with_capacity(bytes.len());
     for (index, line) in lines(&bytes).enumerate() {
         let record: Value =
-            serde_json::from_slice(line).map_err(|source| MetricsError::Malformed {
+            serde_json::from_slice(line).map_err(|error| MetricsError::Malformed {
                 path: path.to_owned(),
                 line: index + 1,
-                source,
+                said: error.to_string(),
             })?;
         if record["iteration"]
             .as_u64()

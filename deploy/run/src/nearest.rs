@@ -2,6 +2,9 @@
 //!
 //! Separate because keys, sections, presets and runs are all misspelt the same way.
 
+/// Longer names are not misspelt, and comparing them takes time.
+const LONGEST: usize = 100;
+
 /// The remedy for an unknown `name`: the closest of `known`, else all of them.
 pub fn remedy(name: &str, known: &[&str]) -> String {
     let close = nearest(name, known);
@@ -15,6 +18,9 @@ pub fn remedy(name: &str, known: &[&str]) -> String {
 
 /// At most three of `known` that differ from `name` in about a third of their letters, closest first.
 fn nearest<'a>(name: &str, known: &[&'a str]) -> Vec<&'a str> {
+    if name.len() > LONGEST {
+        return Vec::new();
+    }
     let mut scored: Vec<(usize, &str)> = known
         .iter()
         .map(|candidate| {

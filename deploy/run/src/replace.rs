@@ -11,9 +11,12 @@ use std::path::Path;
 /// # Errors
 /// What the file system refused; the old file is then untouched.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let folder = path
-        .parent()
-        .ok_or_else(|| io::Error::other("a path without a folder"))?;
+    let folder = match path.parent() {
+        // A bare name has the empty path as its folder, which the system does not know.
+        Some(folder) if folder.as_os_str().is_empty() => Path::new("."),
+        Some(folder) => folder,
+        None => return Err(io::Error::other("a path without a folder")),
+    };
     let name = path
         .file_name()
         .ok_or_else(|| io::Error::other("a path without a file name"))?;

@@ -132,7 +132,7 @@ impl Folder {
 
     fn written_pid(&self, role: &str) -> String {
         match self.written(role).lines().next() {
-            Some(pid) if !pid.is_empty() => pid.to_owned(),
+            Some(pid) if !pid.is_empty() => wording::line(pid),
             _ => "unknown".to_owned(),
         }
     }

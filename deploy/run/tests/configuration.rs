@@ -227,3 +227,66 @@ fn a_key_without_a_section_belongs_to_the_run() {
     );
     assert!(message.contains("`seed`"), "{message}");
 }
+
+/// In one line, short, without what a terminal would obey and without a long run of the content.
+fn assert_short(said: &str) {
+    assert!(said.chars().count() < 900, "{said:.1000}");
+    assert!(!said.contains(char::is_control), "{said:?}");
+    assert!(!said.contains(&"A".repeat(101)), "{said}");
+}
+
+#[test]
+fn a_file_that_is_no_configuration_is_named_and_not_echoed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.toml");
+    let refused = |bytes: &[u8]| {
+        std::fs::write(&path, bytes).unwrap();
+        Config::read(&path).unwrap_err().to_string()
+    };
+    let long = "A".repeat(1_800_000);
+    let pointer = refused(b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\n");
+    assert!(
+        pointer.contains("mine.toml") && pointer.contains("a Git LFS pointer"),
+        "{pointer}"
+    );
+    let page = refused(format!("<!DOCTYPE html>{long}").as_bytes());
+    assert!(page.contains("a web page (HTML)"), "{page}");
+    let picture = refused(b"\x89PNG\r\n\x1a\n\xff");
+    assert!(picture.contains("a picture (PNG)"), "{picture}");
+    let empty_value = refused(b"[run]\nseed =\n");
+    // TOML expects a value behind the sign of equality: column 7 of the second line.
+    assert!(empty_value.contains("line 2, column 7: "), "{empty_value}");
+    assert!(empty_value.ends_with(", in \"seed =\""), "{empty_value}");
+    for hostile in [
+        long.clone(),
+        format!("[run]\nseed = {long}"),
+        format!("[run]\nseed = \"{long}"),
+        format!("a = 1\n\"{long}\" = 2\n\"{long}\" = 3"),
+        "\x1b[2J".repeat(100_000),
+    ] {
+        assert_short(&refused(hostile.as_bytes()));
+    }
+}
+
+#[test]
+fn a_value_of_megabytes_is_refused_in_a_line() {
+    let long = "A".repeat(1_800_000);
+    for text in [
+        format!("[walk]\nspeed = \"{long}\""),
+        format!("[walk]\n{long} = 1"),
+        format!("[walk]\nmethod = \"{long}\""),
+        format!("[walk.limit]\n\"{long}\\u001b\" = 1"),
+        "[walk]\nspeed = \"\\u001b[2J\"".to_owned(),
+    ] {
+        assert_short(
+            &config(&text)
+                .section::<Walk>("walk")
+                .unwrap_err()
+                .to_string(),
+        );
+    }
+    let unknown = config(&format!("[{long}]\nx = 1"));
+    assert_short(&unknown.check_sections(&["walk"]).unwrap_err().to_string());
+    let mut given = config("");
+    assert_short(&given.set(&format!("{long}.=1")).unwrap_err().to_string());
+}

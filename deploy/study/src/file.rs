@@ -92,8 +92,9 @@ impl StudyFile {
     /// # Errors
     /// Names the key, what is wrong with it and what would be right.
     pub fn parse(text: &str) -> Result<Self, FileError> {
-        let file: Self = toml::from_str(text)
-            .map_err(|error| FileError::Syntax(error.to_string().trim_end().to_owned()))?;
+        let file: Self = toml::from_str(text).map_err(|error| {
+            FileError::Syntax(wording::refusal(text, error.span(), error.message()))
+        })?;
         file.check()?;
         Ok(file)
     }
@@ -200,6 +201,26 @@ mod tests {
         assert_eq!(file.parallel, 1);
         assert_eq!(file.overrides["task"]["physics"].as_str(), Some("batched"));
         assert_eq!(StudyFile::parse(&file.to_toml()).unwrap(), file);
+    }
+
+    #[test]
+    fn what_is_no_study_is_named_and_not_echoed() {
+        let refused = |text: &str| {
+            let parsed = StudyFile::parse(text).map(drop);
+            parsed.unwrap_err().to_string()
+        };
+        let page = refused(&format!("<html>{}", "A".repeat(1_800_000)));
+        assert!(page.starts_with("it is a web page (HTML); "), "{page}");
+        let long = refused(&"A".repeat(1_800_000));
+        assert!(
+            long.chars().count() < 400 && long.starts_with("line 1, "),
+            "{long:.500}"
+        );
+        let key = refused(&format!("{} = 1\n{GOOD}", "A".repeat(1_800_000)));
+        assert!(
+            key.chars().count() < 900 && !key.contains('\n'),
+            "{key:.1000}"
+        );
     }
 
     #[test]

@@ -1,14 +1,16 @@
 //! What can be wrong with reference motion: each error names the place and the remedy.
 //!
-//! Separate because configuration, import and gait share it.
+//! Separate because configuration, import and gait share it. What a message quotes of a file is cut short here, whoever
+//! quotes it.
 
 use std::path::PathBuf;
+use wording::said;
 
 /// Why a dataset of reference motion could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum MotionError {
     /// A field of the `[motion]` section has an unusable value.
-    #[error("motion.{field} = {value}: {remedy}")]
+    #[error("motion.{field} = {}: {remedy}", said(value))]
     Config {
         /// Path of the field, for example `clips[2].speed`.
         field: String,
@@ -27,7 +29,7 @@ pub enum MotionError {
         source: std::io::Error,
     },
     /// A line or a cell of a file cannot be used.
-    #[error("{} line {line}{}: {problem}; {remedy}", path.display(), column_text(column))]
+    #[error("{} line {line}{}: {}; {remedy}", path.display(), column_text(column), said(problem))]
     Cell {
         /// The file.
         path: PathBuf,
@@ -41,7 +43,7 @@ pub enum MotionError {
         remedy: String,
     },
     /// A frame of a file without lines cannot be used.
-    #[error("{} frame {frame}, {field}: {problem}; {remedy}", path.display())]
+    #[error("{} frame {frame}, {}: {}; {remedy}", path.display(), wording::line(field), said(problem))]
     Frame {
         /// The file.
         path: PathBuf,
@@ -55,7 +57,7 @@ pub enum MotionError {
         remedy: String,
     },
     /// A file as a whole cannot be used.
-    #[error("{}: {problem}; {remedy}", path.display())]
+    #[error("{}: {}; {remedy}", path.display(), said(problem))]
     File {
         /// The file.
         path: PathBuf,

@@ -149,35 +149,43 @@ pub fn import(path: &Path, options: &Options) -> Result<Imported, MotionError> {
         path,
         bytes: &bytes,
     };
+    imported(&file, options, decisions).map_err(|error| file.foreign().unwrap_or(error))
+}
+
+fn imported(
+    file: &File<'_>,
+    options: &Options,
+    mut decisions: Vec<String>,
+) -> Result<Imported, MotionError> {
     let format = match options.format {
         Some(format) => format,
         None => {
-            let (format, told) = format::detect(&file)?;
+            let (format, told) = format::detect(file)?;
             decisions.push(format!("{format}: {told}"));
             format
         }
     };
-    let (motion, stated) = read(&file, format, options, &mut decisions)?;
-    let fps = rate::decide(&file, options, stated, &mut decisions)?;
+    let (motion, stated) = read(file, format, options, &mut decisions)?;
+    let fps = rate::decide(file, options, stated, &mut decisions)?;
     let (frames, clip, retargeting) = match motion {
         Motion::Robot(rows, sure) => {
-            let rows = oriented(&file, rows, sure, fps, options, &mut decisions)?;
-            let clip = resample::clip(&file, &rows, fps, options.ground, &mut decisions)?;
+            let rows = oriented(file, rows, sure, fps, options, &mut decisions)?;
+            let clip = resample::clip(file, &rows, fps, options.ground, &mut decisions)?;
             (rows.len(), clip, None)
         }
         Motion::Finished(rows) => {
-            resample::check_duration(&file, rows.len(), fps)?;
+            resample::check_duration(file, rows.len(), fps)?;
             decisions.push("written by ampco: taken as it is".into());
-            (rows.len(), resample::finished(path, &rows), None)
+            (rows.len(), resample::finished(file.path, &rows), None)
         }
         Motion::Human(joints) => {
-            resample::check_duration(&file, joints.frames.len(), fps)?;
-            let capture = human::capture(&file, &joints, fps, &mut decisions)?;
+            resample::check_duration(file, joints.frames.len(), fps)?;
+            let capture = human::capture(file, &joints, fps, &mut decisions)?;
             let (postures, report) = retarget::retarget(&capture);
             let rows: Vec<Row> = postures.iter().map(row).collect();
             (
                 joints.frames.len(),
-                resample::finished(path, &rows),
+                resample::finished(file.path, &rows),
                 Some(report),
             )
         }
@@ -289,6 +297,9 @@ fn row(posture: &retarget::Posture) -> Row {
     }
 }
 
+#[cfg(test)]
+#[path = "import/foreign_tests.rs"]
+mod foreign_tests;
 #[cfg(test)]
 #[path = "import/import_tests.rs"]
 mod tests;

@@ -108,7 +108,7 @@ impl Manifest {
         if any["format"] != FORMAT {
             return Err(Refusal::Foreign(format!(
                 "{FILE} says format {}",
-                any["format"]
+                wording::line(&any["format"].to_string())
             )));
         }
         // The version comes first: a later manifest may have other fields.

@@ -64,7 +64,10 @@ pub enum Refusal {
     #[error("part `{0}` is corrupt: its checksum differs")]
     Corrupt(String),
     /// It belongs to networks of another shape.
-    #[error("it is of shape `{found}`, and this run's is `{expected}`")]
+    #[error(
+        "it is of shape `{}`, and this run's is `{expected}`",
+        wording::line(found)
+    )]
     Shape {
         /// This run's shape.
         expected: String,

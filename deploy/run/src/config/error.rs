@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use wording::{line, said};
+
 /// Why a configuration cannot be used. Every message names the origin, the key and the remedy.
 #[derive(Debug, thiserror::Error)]
 pub enum ConfigError {
@@ -28,11 +30,11 @@ pub enum ConfigError {
     Syntax {
         /// The file or preset.
         origin: String,
-        /// What the parser said, with line and column.
+        /// What the file is instead, or line, column, what the parser said and a piece of the line.
         message: String,
     },
     /// `--set` was given something that is not `key=value`.
-    #[error("--set {given}: {problem}")]
+    #[error("--set {}: {}", line(given), said(problem))]
     Assignment {
         /// The argument as given.
         given: String,
@@ -40,7 +42,7 @@ pub enum ConfigError {
         problem: String,
     },
     /// A section that nobody reads.
-    #[error("{origin}: unknown section [{section}]; {remedy}")]
+    #[error("{origin}: unknown section [{}]; {remedy}", line(section))]
     UnknownSection {
         /// Where it was given.
         origin: String,
@@ -50,7 +52,10 @@ pub enum ConfigError {
         remedy: String,
     },
     /// A key that nobody reads.
-    #[error("{origin}: unknown key `{key}` in [{section}] (value {value}); {remedy}")]
+    #[error(
+        "{origin}: unknown key `{}` in [{section}] (value {value}); {remedy}",
+        line(key)
+    )]
     UnknownKey {
         /// Where it was given.
         origin: String,
@@ -64,7 +69,12 @@ pub enum ConfigError {
         remedy: String,
     },
     /// A value of the wrong type or an unknown choice.
-    #[error("{origin}: `{key}` = {value} in [{section}]: {problem}")]
+    #[error(
+        "{origin}: `{}` = {value} in [{}]: {}",
+        line(key),
+        line(section),
+        said(problem)
+    )]
     Value {
         /// Where it was given.
         origin: String,
@@ -78,7 +88,7 @@ pub enum ConfigError {
         problem: String,
     },
     /// A value that its section's owner refuses: out of range, or at odds with another.
-    #[error("{origin}: [{section}] {problem}")]
+    #[error("{origin}: [{section}] {}", said(problem))]
     Refused {
         /// Where it was given.
         origin: String,

@@ -1,5 +1,7 @@
 //! One comparison as evidence: what it shows, and whether it may count.
 
+use wording::count;
+
 use super::Verdict;
 use crate::compare::{Comparison, LEVEL};
 use crate::metric::Metric;
@@ -161,7 +163,8 @@ pub(super) fn too_short(
         if before > 0 {
             let label = paper::label(entry);
             return Some(format!(
-                "too short, {before} of {runs} runs of {label} had not reached Phase II"
+                "too short, {before} of {} of {label} had not reached Phase II",
+                count(runs, "run")
             ));
         }
         let moving = |metric| {
@@ -174,7 +177,8 @@ pub(super) fn too_short(
         if let Some(moving) = metric.map(moving).filter(|moving| 2 * moving > runs) {
             let label = paper::label(entry);
             return Some(format!(
-                "too short, it was still moving in {moving} of {runs} runs of {label}"
+                "too short, it was still moving in {moving} of {} of {label}",
+                count(runs, "run")
             ));
         }
     }

@@ -1,5 +1,7 @@
 //! The paper's claims in its order.
 
+use wording::count;
+
 use super::finding::{Finding, alike, better, missing, steadier, together, too_short, undecided};
 use super::{Claim, Verdict};
 use crate::metric::Metric;
@@ -222,7 +224,11 @@ fn switch(results: &Results) -> Finding {
     let Some(first) = runs.first() else {
         return missing(results, &[AMPCO]);
     };
-    let mut words = format!("{} of {} runs entered Phase II", at.len(), runs.len());
+    let mut words = format!(
+        "{} of {} entered Phase II",
+        at.len(),
+        count(runs.len(), "run")
+    );
     if !at.is_empty() {
         let mean = at.iter().sum::<f64>() / at.len() as f64;
         words.push_str(&format!(
@@ -272,8 +278,8 @@ fn overhead(results: &Results) -> Finding {
             Verdict::Contradicted
         },
         words: format!(
-            "over {} runs at most {:.5} % of a cycle (medians) for the scheduler's decision and {:.5} % for weighting in the learner",
-            measured.len(),
+            "over {} at most {:.5} % of a cycle (medians) for the scheduler's decision and {:.5} % for weighting in the learner",
+            count(measured.len(), "run"),
             100.0 * decision,
             100.0 * weighting
         ),

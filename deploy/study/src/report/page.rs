@@ -88,11 +88,11 @@ fn opening(results: &Results) -> String {
     }
     let _ = writeln!(
         html,
-        "<p>{} methods × {} seeds: {finished} of {} runs finished, {failed} failed. The paper: 8 methods × {} seeds × \
+        "<p>{} × {}: {finished} of {} finished, {failed} failed. The paper: 8 methods × {} seeds × \
          {} iterations of {} transitions.</p>",
-        results.entries.len(),
-        file.seeds.len(),
-        results.runs.len(),
+        wording::count(results.entries.len(), "method"),
+        wording::count(file.seeds.len(), "seed"),
+        wording::count(results.runs.len(), "run"),
         paper::SEEDS,
         paper::ITERATIONS,
         paper::ROWS

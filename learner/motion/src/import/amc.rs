@@ -26,10 +26,11 @@ pub(super) fn read(
         None => find_skeleton(file)?,
     };
     let bytes = file::read(&path)?;
-    let skeleton = asf::read(&File {
+    let skeleton = File {
         path: &path,
         bytes: &bytes,
-    })?;
+    };
+    let skeleton = asf::read(&skeleton).map_err(|error| skeleton.foreign().unwrap_or(error))?;
     decisions.push(format!("skeleton {}", path.display()));
     let frames = frames(file, &skeleton)?;
     Ok(named(&skeleton, frames))
@@ -161,8 +162,8 @@ impl Pose {
             .collect::<Result<_, _>>()?;
         if numbers.len() != expected {
             let problem = format!(
-                "{} numbers where the skeleton has {expected} (line {line})",
-                numbers.len()
+                "{} where the skeleton has {expected} (line {line})",
+                wording::count(numbers.len(), "number")
             );
             return Err(file.frame(frame, bone, problem, "download or export it again"));
         }

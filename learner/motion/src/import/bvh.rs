@@ -8,6 +8,7 @@ use super::human::Joints;
 use crate::error::MotionError;
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use std::collections::BTreeMap;
+use wording::count;
 
 /// A channel of a joint: an axis to move along or to turn about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,8 +56,8 @@ pub(super) fn read(file: &File<'_>) -> Result<(Joints, f64), MotionError> {
     }
     if frames.len() as f64 != declared {
         let problem = format!(
-            "holds {} frames where Frames: says {declared}",
-            frames.len()
+            "holds {} where Frames: says {declared}",
+            count(frames.len(), "frame")
         );
         return Err(file.unusable(&problem, "download or export it again: it may be cut off"));
     }
@@ -260,8 +261,11 @@ impl<'a> Words<'a> {
         let field = format!("channel {}", channel + 1);
         let next = self.words.next_if(|(at, _)| *at == line);
         let Some((_, word)) = next else {
-            let problem =
-                format!("line {line} has {channel} numbers, the hierarchy has {channels} channels");
+            let problem = format!(
+                "line {line} has {}, the hierarchy has {}",
+                count(channel, "number"),
+                count(channels, "channel")
+            );
             return Err(self.file.frame(
                 frame,
                 &field,

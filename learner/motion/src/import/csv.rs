@@ -130,8 +130,8 @@ impl<'a> Line<'a> {
         let cells: Vec<&str> = self.cells().collect();
         if cells.len() != layout.width {
             let problem = format!(
-                "{} columns where the first line has {}",
-                cells.len(),
+                "{} where the first line has {}",
+                wording::count(cells.len(), "column"),
                 layout.width
             );
             return Err(self.error(None, problem, "give every line the same columns"));

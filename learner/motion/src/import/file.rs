@@ -39,6 +39,13 @@ impl File<'_> {
         }
     }
 
+    /// That it is something else than its name says, if that is known: a better reason than what a reader stumbled
+    /// over. Asked once a reader has given up, so that nothing that can be read is refused.
+    pub(super) fn foreign(&self) -> Option<MotionError> {
+        let foreign = wording::foreign(self.bytes)?;
+        Some(self.unusable(&format!("is {}", foreign.what), foreign.remedy))
+    }
+
     /// A line of it cannot be used.
     pub(super) fn line(&self, line: usize, problem: String, remedy: &str) -> MotionError {
         MotionError::Cell {

@@ -191,7 +191,7 @@ fn detect_pickle(file: &File<'_>) -> Result<(Format, String), MotionError> {
     Err(file.unusable(
         &format!(
             "is a pickle with {}, which no known format has",
-            pickle.keys().join(", ")
+            wording::line(&pickle.keys().join(", "))
         ),
         "known are PHC, ASAP and PBHC, GMR, and MimicKit; say which with --format",
     ))
@@ -206,7 +206,7 @@ fn detect_npz(file: &File<'_>) -> Result<(Format, String), MotionError> {
         return Err(file.unusable(
             &format!(
                 "is PyTorch's archive of {}, which no known format has",
-                pickle.keys().join(", ")
+                wording::line(&pickle.keys().join(", "))
             ),
             "known are ProtoMotions' .motion and .pt",
         ));
@@ -228,7 +228,7 @@ fn detect_npz(file: &File<'_>) -> Result<(Format, String), MotionError> {
     Err(file.unusable(
         &format!(
             "holds the arrays {}, which no known format has",
-            names.join(", ")
+            wording::line(&names.join(", "))
         ),
         "known are AMASS, SMPL-X, BeyondMimic, Isaac Lab and amp-rsl-rl; say which with --format",
     ))

@@ -55,7 +55,7 @@ impl Line<'_> {
             _ => {
                 return Err(self.error(
                     None,
-                    format!("{width} columns"),
+                    wording::count(width, "column"),
                     "expected 30 (x y z, quaternion, 23 joints) or 36 (29 joints), or a header \
                      that names them",
                 ));

@@ -5,6 +5,7 @@
 
 use super::File;
 use crate::error::MotionError;
+use wording::count;
 
 /// Numbers in C order.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,8 +114,8 @@ impl Array {
             return Ok(());
         }
         let problem = format!(
-            "array {name} has {} frames, {other_name} has {}",
-            self.frames(),
+            "array {name} has {}, {other_name} has {}",
+            count(self.frames(), "frame"),
             other.frames()
         );
         Err(file.unusable(

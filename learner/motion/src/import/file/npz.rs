@@ -40,7 +40,10 @@ impl<'a> Archive<'a> {
     /// An array of numbers that must be there.
     pub(in crate::import) fn numbers(&mut self, name: &str) -> Result<Array, MotionError> {
         self.try_numbers(name)?.ok_or_else(|| {
-            let problem = format!("has no array {name} (but {})", self.names().join(", "));
+            let problem = format!(
+                "has no array {name} (but {})",
+                wording::line(&self.names().join(", "))
+            );
             self.file
                 .unusable(&problem, "check --format, or export the motion again")
         })

@@ -5,6 +5,7 @@
 use super::numbers::{self, width};
 use super::reader::{Outcome, Reader};
 use super::{Array, Value};
+use wording::line;
 
 /// joblib's place holder: the numbers of an array follow it in the file.
 const WRAPPER: &str = "joblib.numpy_pickle.NumpyArrayWrapper";
@@ -18,7 +19,7 @@ impl Reader<'_> {
         let argument = |i: usize| {
             let id = arguments
                 .get(i)
-                .ok_or_else(|| format!("{name} lacks argument {i}"))?;
+                .ok_or_else(|| format!("{} lacks argument {i}", line(&name)))?;
             Ok::<&Value, String>(&self.values[*id])
         };
         let value = match name.as_str() {
@@ -82,7 +83,10 @@ impl Reader<'_> {
                 _ => return Err("bytes that are no text".into()),
             },
             label if LABELS.contains(&label) => Value::None,
-            other => return Err(format!("it calls {other}, which is not plain data")),
+            other => {
+                let other = line(other);
+                return Err(format!("it calls {other}, which is not plain data"));
+            }
         };
         self.push(value);
         Ok(())
@@ -107,7 +111,7 @@ impl Reader<'_> {
             return Err("a call of what is no name".into());
         };
         let Value::Tuple(arguments) = &self.values[arguments] else {
-            return Err(format!("{name} is called without arguments"));
+            return Err(format!("{} is called without arguments", line(&name)));
         };
         self.spend(arguments.len())?;
         Ok((name, arguments.clone()))
@@ -132,7 +136,7 @@ impl Reader<'_> {
             "torch.CharStorage" => "i1",
             "torch.ByteStorage" => "u1",
             "torch.BoolStorage" => "b1",
-            other => return Err(format!("numbers of type {other}")),
+            other => return Err(format!("numbers of type {}", line(other))),
         };
         let name = name.clone();
         let load = self.storages.as_mut().ok_or("numbers outside it")?;

@@ -12,7 +12,7 @@ pub(super) fn width(kind: &str) -> Outcome<usize> {
     match (letter, count) {
         ("f" | "i" | "u" | "b" | "S", Some(count)) => Ok(count),
         ("U", Some(count)) => Ok(4 * count),
-        _ => Err(format!("numbers of type {kind}")),
+        _ => Err(format!("numbers of type {}", wording::line(kind))),
     }
 }
 
@@ -83,7 +83,7 @@ pub(super) fn values(kind: &str, big: bool, bytes: &[u8]) -> Outcome<Vec<f64>> {
         "u4" => read!(u32),
         "u2" => read!(u16),
         "u1" | "b1" => read!(u8),
-        other => return Err(format!("numbers of type {other}")),
+        other => return Err(format!("numbers of type {}", wording::line(other))),
     })
 }
 
