@@ -10,11 +10,11 @@ mod products;
 mod scheduler;
 mod sim;
 
-use std::io::Write;
-
 use anyhow::{Context, Result};
 use clap::{Args, Subcommand};
 use serde_json::Value;
+
+use crate::console;
 
 /// Measure one part on this machine; the last line printed is a JSON object
 #[derive(Debug, Args)]
@@ -52,7 +52,5 @@ impl Bench {
 }
 
 fn print(result: &Value) -> Result<()> {
-    let mut out = std::io::stdout().lock();
-    writeln!(out, "{result}").context("writing to standard output")?;
-    out.flush().context("writing to standard output")
+    console::print(&format!("{result}\n"))
 }

@@ -239,15 +239,81 @@ pub(crate) fn program(name: &str) -> Result<PathBuf> {
     }
 }
 
-/// "was killed by signal 9", "failed with status 1".
+/// "was killed by signal 9 (SIGKILL)", "failed with status 1".
 pub(crate) fn describe(status: ExitStatus) -> String {
     use std::os::unix::process::ExitStatusExt;
     match (status.code(), status.signal()) {
         (Some(0), _) => "ended".to_owned(),
         (Some(code), _) => format!("failed with status {code}"),
-        (None, Some(signal)) => format!("was killed by signal {signal}"),
+        (None, Some(signal)) => match of_signal(signal) {
+            Some((name, _)) => format!("was killed by signal {signal} ({name})"),
+            None => format!("was killed by signal {signal}"),
+        },
         (None, None) => "ended in an unknown way".to_owned(),
     }
+}
+
+/// A signal's name, and what usually is behind it.
+fn of_signal(signal: i32) -> Option<(&'static str, &'static str)> {
+    let bug = "that is a bug of the program";
+    Some(match Signal::from_named_raw(signal)? {
+        Signal::ILL => (
+            "SIGILL",
+            "this processor lacks an instruction that the program was built for: build it on this machine",
+        ),
+        Signal::ABORT => ("SIGABRT", bug),
+        Signal::BUS => ("SIGBUS", "look whether /dev/shm or the disk is full"),
+        Signal::FPE => ("SIGFPE", bug),
+        Signal::KILL => (
+            "SIGKILL",
+            "somebody sent it, or the kernel, as it does when memory runs out",
+        ),
+        Signal::SEGV => ("SIGSEGV", bug),
+        Signal::TERM => ("SIGTERM", "somebody sent it"),
+        Signal::HUP => ("SIGHUP", "its terminal was closed"),
+        Signal::INT => ("SIGINT", "somebody sent it"),
+        Signal::XCPU => ("SIGXCPU", "its limit of processor time was reached"),
+        Signal::XFSZ => ("SIGXFSZ", "its limit of the size of files was reached"),
+        _ => return None,
+    })
+}
+
+/// What is known of a death: the end, the last words if there were any, the log if this life wrote anything to it, else
+/// what usually is behind such an end. `before` is the length of the log, in bytes, when this life began.
+pub(crate) fn account(status: ExitStatus, said: Option<&str>, log: &Path, before: u64) -> String {
+    use std::os::unix::process::ExitStatusExt;
+    let mut account = describe(status);
+    let length = std::fs::metadata(log).ok().map(|facts| facts.len());
+    let place = log.display();
+    if let Some(said) = said {
+        account += &format!(": {}", wording::said(said));
+    }
+    if length > Some(before) {
+        return format!("{account}; see {place}");
+    }
+    let cause = status.signal().and_then(of_signal);
+    if let (None, Some((_, cause))) = (said, cause) {
+        account += &format!("; {cause}");
+    }
+    if said.is_none() {
+        account += &match length {
+            None => format!("; it said nothing and {place} was never made"),
+            Some(0) => format!("; it said nothing and {place} is empty"),
+            Some(_) => format!("; it said nothing, and nothing of this time is in {place}"),
+        };
+    }
+    account
+}
+
+/// The last thing that stands in a log since it was `before` bytes long: what a program of ours said as it failed, else its
+/// last line.
+pub(crate) fn last_words(log: &Path, before: u64) -> Option<String> {
+    let bytes = std::fs::read(log).ok()?;
+    let said = String::from_utf8_lossy(bytes.get(usize::try_from(before).ok()?..)?);
+    let mut lines = said.lines().rev().filter(|line| !line.trim().is_empty());
+    let last = lines.clone().next()?;
+    let complaint = lines.find(|line| line.starts_with("ampco: "));
+    Some(complaint.unwrap_or(last).trim().to_owned())
 }
 
 #[cfg(test)]

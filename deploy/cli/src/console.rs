@@ -1,10 +1,13 @@
 //! What one who watches sees: a line or two rewritten in place on a terminal, else a plain line
 //! every few seconds, and messages that stay.
 //!
-//! Everything goes to standard error; standard output is for results.
+//! Everything goes to standard error; standard output is for [`Results`].
 
-use std::io::{IsTerminal, Stderr, Write};
+use std::io::{self, IsTerminal, Stderr, StdoutLock, Write};
 use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result};
+use wording::harmless;
 
 /// Between two plain lines.
 const EVERY: Duration = Duration::from_secs(5);
@@ -15,7 +18,48 @@ pub(crate) const BETWEEN: &str = " · ";
 /// Says something where no line is rewritten in place.
 pub(crate) fn say(message: &str) {
     // Whoever watched may have closed the terminal.
-    let _ = writeln!(std::io::stderr(), "{message}");
+    let _ = writeln!(io::stderr(), "{}", harmless(message));
+}
+
+/// Standard output. Who reads it may have seen enough, as `head` has after ten lines: the rest is dropped, and what a
+/// command writes elsewhere is written all the same. Any other refusal, as of a full disk, is an error.
+#[derive(Debug)]
+pub(crate) struct Results<W = StdoutLock<'static>>(W);
+
+/// Where a command writes what it was asked for.
+pub(crate) fn results() -> Results {
+    Results(io::stdout().lock())
+}
+
+/// Prints the whole of a result, which ends in a line break.
+pub(crate) fn print(result: &str) -> Result<()> {
+    let mut out = results();
+    out.write_all(result.as_bytes())
+        .and_then(|()| out.flush())
+        .context("writing to standard output")
+}
+
+/// Hands on what is still held back; called once, at the end.
+pub(crate) fn finish_results() -> Result<()> {
+    results().flush().context("writing to standard output")
+}
+
+impl<W: Write> Write for Results<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        unless_gone(self.0.write(bytes), bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        unless_gone(self.0.flush(), ())
+    }
+}
+
+/// What came of writing, or `enough` where nobody reads any more.
+fn unless_gone<T>(written: io::Result<T>, enough: T) -> io::Result<T> {
+    match written {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(enough),
+        written => written,
+    }
 }
 
 #[derive(Debug)]
@@ -31,7 +75,7 @@ pub(crate) struct Console {
 
 impl Console {
     pub(crate) fn new() -> Self {
-        let out = std::io::stderr();
+        let out = io::stderr();
         let terminal = out.is_terminal();
         Self {
             out,
@@ -56,6 +100,7 @@ impl Console {
 
     /// Says something that stays.
     pub(crate) fn say(&mut self, message: &str) {
+        let message = harmless(message);
         if self.terminal {
             self.rewrite(&format!("{message}\n"));
         } else {
@@ -129,6 +174,29 @@ mod tests {
         assert_eq!(wrapped("one · two · three", 9), ["one", "two", "three"]);
         assert_eq!(wrapped("one · two · three", 80), ["one · two · three"]);
         assert_eq!(wrapped("", 80), [""; 0]);
+    }
+
+    /// Refuses everything for the same reason.
+    struct Refusing(io::ErrorKind);
+
+    impl Write for Refusing {
+        fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+            Err(self.0.into())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Err(self.0.into())
+        }
+    }
+
+    #[test]
+    fn a_reader_that_has_seen_enough_is_no_failure_and_a_full_disk_is() {
+        let mut gone = Results(Refusing(io::ErrorKind::BrokenPipe));
+        gone.write_all(b"a line\n").unwrap();
+        gone.flush().unwrap();
+        let mut full = Results(Refusing(io::ErrorKind::StorageFull));
+        assert!(full.write_all(b"a line\n").is_err());
+        assert!(full.flush().is_err());
     }
 
     #[test]

@@ -16,7 +16,6 @@ pub(crate) mod subject;
 mod table;
 mod tally;
 
-use std::io::Write;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Instant;
@@ -26,7 +25,7 @@ use clap::builder::PossibleValuesParser;
 use serde_json::Value;
 use sim::randomization::ROWS;
 
-use crate::console::Console;
+use crate::console::{self, Console};
 use crate::engine::Engine;
 use crate::failure::usage;
 use crate::place::Place;
@@ -271,9 +270,7 @@ impl Evaluate {
             text.push_str(&format!("\n\nwritten to {}", folder.display()));
         }
         text.push('\n');
-        std::io::stdout()
-            .write_all(text.as_bytes())
-            .context("writing to standard output")
+        console::print(&text)
     }
 }
 

@@ -11,6 +11,7 @@ use g1::mjcf;
 use sim::RandomizationConfig;
 use sim::world::{CONTROL_STEP, GRAVITY, PHYSICS_STEP};
 
+use crate::console;
 use crate::evaluate::subject::Kept;
 use crate::failure::usage;
 use crate::place::Place;
@@ -43,7 +44,7 @@ pub(crate) struct Export {
 
 impl Export {
     pub(crate) fn run(&self) -> Result<()> {
-        let mut out = std::io::stdout().lock();
+        let mut out = console::results();
         let written = match (&self.run, &self.out) {
             (None, None) => {
                 write!(out, "{}", model())?;

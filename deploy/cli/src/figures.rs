@@ -8,6 +8,7 @@ use std::time::Duration;
 use serde::Deserialize;
 use serde_json::Value;
 use vocabulary::Cause;
+use wording::count;
 
 /// What is shown of one line of `metrics.jsonl`; whatever a line does not have is not shown.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -188,16 +189,6 @@ impl Pace {
             Duration::try_from_secs_f64(seconds).ok()
         }
     }
-}
-
-/// "1 actor", "2 actors".
-pub(crate) fn count(number: usize, thing: &str) -> String {
-    let plural = match (number, thing) {
-        (1, _) => "",
-        (_, "process") => "es",
-        _ => "s",
-    };
-    format!("{number} {thing}{plural}")
 }
 
 /// "1:02:03" or "2:03".

@@ -13,11 +13,14 @@ mod evaluate;
 mod export;
 mod failure;
 mod figures;
+mod file;
 mod motions;
 mod place;
 mod play;
 mod plot;
 mod presets;
+#[cfg(test)]
+mod readme;
 mod resolve;
 mod soak;
 mod stages;
@@ -26,7 +29,6 @@ mod study;
 mod supervise;
 mod train;
 
-use std::io::Write;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -100,11 +102,10 @@ fn main() -> ExitCode {
         Command::Bench(bench) => bench.run(),
         Command::Soak(soak) => soak.run(),
     };
-    match done {
+    match done.and_then(|()| console::finish_results()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // A reader that closed standard error is no reason to fail differently.
-            let _ = writeln!(std::io::stderr(), "ampco: {error:#}");
+            console::say(&format!("ampco: {error:#}"));
             failure::exit_code(&error)
         }
     }

@@ -5,14 +5,16 @@
 mod clip;
 mod policy;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use playback::{Recording, page};
 
+use crate::console;
 use crate::engine::Engine;
 use crate::evaluate::Command;
 use crate::failure::usage;
+use crate::file;
 use crate::place::Place;
 
 /// Watch a policy or a reference motion: a page for any browser, or the frames as data
@@ -64,15 +66,18 @@ impl Play {
                 self.seconds
             )));
         }
+        for path in [&self.html, &self.json].into_iter().flatten() {
+            file::check_place(path)?;
+        }
         let recording = match clip::Source::parse(&self.what) {
             Some(source) => clip::record(&source, self.fps, self.seconds)?,
             None => policy::record(self)?,
         };
         if let Some(path) = &self.html {
-            write(path, page::html(&recording).as_bytes())?;
+            file::write(path, page::html(&recording).as_bytes())?;
         }
         if let Some(path) = &self.json {
-            write(path, &serde_json::to_vec(&recording)?)?;
+            file::write(path, &serde_json::to_vec(&recording)?)?;
         }
         say(&recording)
     }
@@ -86,12 +91,6 @@ impl Play {
     }
 }
 
-fn write(path: &Path, bytes: &[u8]) -> Result<()> {
-    // A bare file name has the empty path as its folder, which the system does not know.
-    let path = std::path::absolute(path)?;
-    run::replace_file(&path, bytes).with_context(|| format!("writing {}", path.display()))
-}
-
 fn say(recording: &Recording) -> Result<()> {
     use std::io::Write;
     let seconds = (recording.frames.len() - 1) as f64 * recording.frame_seconds;
@@ -99,7 +98,7 @@ fn say(recording: &Recording) -> Result<()> {
         Some(at) => format!(", fell after {at:.2} s"),
         None => String::new(),
     };
-    let mut out = std::io::stdout().lock();
+    let mut out = console::results();
     writeln!(
         out,
         "{} · {}: {seconds:.2} s{ending}",

@@ -1,14 +1,15 @@
 //! `ampco plot`: the learning curves of runs, from their metrics alone.
 
-use std::io::Write;
 use std::path::PathBuf;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use plots::{Axis, Band, Colour, Figure, Line, LineChart, Mark, Panel, smooth};
 use run::{Folder, metrics};
 use serde::Deserialize;
 
+use crate::console;
 use crate::failure::usage;
+use crate::file;
 use crate::place::Place;
 
 /// Points of a curve: as many as a figure can show.
@@ -109,9 +110,8 @@ impl Plot {
             Some(out) => out.clone(),
             None => folders[0].path().join("curves.svg"),
         };
-        run::replace_file(&out, figure(&runs).svg().as_bytes())
-            .with_context(|| format!("writing {}", out.display()))?;
-        writeln!(std::io::stdout(), "{}", out.display()).context("writing to standard output")
+        file::write(&out, figure(&runs).svg().as_bytes())?;
+        console::print(&format!("{}\n", out.display()))
     }
 }
 

@@ -8,16 +8,16 @@ mod figures;
 mod group;
 mod outcome;
 
-use std::io::Write;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use clap::Args;
 use protocol::Shutdown;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use wording::count;
 
-use crate::console::say;
+use crate::console::{self, say};
 use crate::failure::usage;
 use crate::place::Place;
 use figures::Figures;
@@ -90,7 +90,7 @@ impl Soak {
             say(&format!("{problem:#}"));
         }
         let outcome = session.end(self.ends_early())?;
-        writeln!(std::io::stdout(), "{}", outcome.json()).context("writing to standard output")?;
+        console::print(&format!("{}\n", outcome.json()))?;
         went?;
         let failures = outcome.failures();
         if !failures.is_empty() {
@@ -195,8 +195,8 @@ impl<'a> Session<'a> {
             if self.kills.is_multiple_of(50) {
                 let longest = self.longest;
                 say(&format!(
-                    "{} kills, longest recovery {longest:.1} s",
-                    self.kills
+                    "{}, longest recovery {longest:.1} s",
+                    count(self.kills, "kill")
                 ));
             }
         }

@@ -6,11 +6,10 @@
 mod conduct;
 mod plan;
 
-use std::io::Write;
-
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::Args;
 
+use crate::console;
 use crate::place::Place;
 use plan::Plan;
 
@@ -52,6 +51,12 @@ impl Stages {
     }
 }
 
+/// Whether there are such stages and all that they name.
+#[cfg(test)]
+pub(crate) fn check(which: &str) -> Result<()> {
+    Plan::new(which, None, None, &[]).map(drop)
+}
+
 fn print(text: &str) -> Result<()> {
-    writeln!(std::io::stdout(), "{text}").context("writing to standard output")
+    console::print(&format!("{text}\n"))
 }

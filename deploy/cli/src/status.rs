@@ -4,14 +4,14 @@ mod board;
 mod draw;
 mod watch;
 
-use std::io::Write;
-
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::Args;
 use run::{Folder, RunConfig, metrics};
 use serde_json::{Value, json};
+use wording::count;
 
-use crate::figures::{self, Figures, Outlook, count};
+use crate::console;
+use crate::figures::{self, Figures, Outlook};
 use crate::place::Place;
 
 /// Show how a run is going: its newest figures, who is alive, its checkpoints
@@ -42,9 +42,7 @@ impl Status {
             describe(&folder, &status)?
         };
         text.push('\n');
-        std::io::stdout()
-            .write_all(text.as_bytes())
-            .context("writing to standard output")
+        console::print(&text)
     }
 }
 

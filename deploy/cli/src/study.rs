@@ -10,7 +10,6 @@ mod line;
 mod plan;
 mod read;
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use ::study::StudyFile;
@@ -18,7 +17,9 @@ use anyhow::{Context, Result};
 use clap::{Args, Subcommand};
 use run::Config;
 
+use crate::console;
 use crate::failure::usage;
+use crate::file;
 use folder::StudyFolder;
 
 /// Compare methods over seeds: run a matrix of training runs, report it in the paper's tables
@@ -106,11 +107,8 @@ impl RunStudy {
     /// The file with what the options change.
     fn file(&self) -> Result<StudyFile> {
         let path = self.file.display();
-        let text = std::fs::read_to_string(&self.file).map_err(|error| {
-            usage(format!(
-                "{path}: {error}; give a study file, as in deploy/studies/"
-            ))
-        })?;
+        let text =
+            file::read_text(&self.file).context("a study file is needed, as in deploy/studies/")?;
         let mut file =
             StudyFile::parse(&text).map_err(|error| usage(format!("{path}: {error}")))?;
         if !self.methods.is_empty() {
@@ -173,5 +171,5 @@ impl ReportStudy {
 }
 
 fn print(text: &str) -> Result<()> {
-    writeln!(std::io::stdout(), "{text}").context("writing to standard output")
+    console::print(&format!("{text}\n"))
 }

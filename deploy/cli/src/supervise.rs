@@ -3,20 +3,24 @@
 //! One thread and one loop. The thread matters: the kernel ties a child's life to the thread that
 //! started it. The loop waits for signals, for words of the children and for the next look.
 
+use std::collections::BTreeMap;
 use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::ExitStatus;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result};
 use protocol::Domain;
 use run::metrics::Tail;
 use run::{FleetConfig, Folder, RunConfig};
 use rustix::process::{Pid, Signal, kill_process};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::time::{MissedTickBehavior, interval};
+use wording::count;
 
 use crate::child::{self, Child, Verdict, Words};
 use crate::console::Console;
-use crate::figures::{Outlook, Pace, clock, count};
+use crate::figures::{Outlook, Pace, clock};
 
 mod ending;
 mod orphans;
@@ -52,7 +56,9 @@ enum Reason {
     TimeUp,
     /// Ctrl-C or SIGTERM.
     Asked,
-    /// A process cannot be kept alive.
+    /// A process cannot be kept alive: its role and its last end.
+    GivenUp(String, ExitStatus),
+    /// Watching itself failed.
     Failed(anyhow::Error),
 }
 
@@ -76,6 +82,10 @@ struct Group<'a> {
     console: Console,
     tail: Tail,
     pace: Pace,
+    /// By role the last line of the present life on standard error.
+    said: BTreeMap<String, String>,
+    /// By role the length of the log, in bytes, when the present life began.
+    logged: BTreeMap<String, u64>,
     started: Instant,
     glanced: Instant,
     /// The end was asked for once more: nobody is waited for.
@@ -99,6 +109,8 @@ impl<'a> Group<'a> {
                 Tail::from_start(&metrics)
             },
             pace: Pace::default(),
+            said: BTreeMap::new(),
+            logged: BTreeMap::new(),
             started: now,
             glanced: now,
             forced: false,
@@ -147,17 +159,7 @@ impl<'a> Group<'a> {
                     self.console.say(&message);
                 }
                 Verdict::GiveUp => {
-                    let log = self
-                        .launch
-                        .folder
-                        .logs()
-                        .join(format!("{}.log", child.role));
-                    let error = anyhow!(
-                        "{} {end} and is given up; see {}",
-                        child.role,
-                        log.display()
-                    );
-                    return Ok(Some(Reason::Failed(error)));
+                    return Ok(Some(Reason::GivenUp(child.role.clone(), status)));
                 }
             }
         }
@@ -166,6 +168,10 @@ impl<'a> Group<'a> {
                 if child.role == LEARNER && child.restarts > 0 {
                     child.arguments = learner_arguments(self.launch, has_checkpoint(self.launch));
                 }
+                let log = log(self.launch.folder, &child.role);
+                let length = std::fs::metadata(log).map_or(0, |facts| facts.len());
+                self.logged.insert(child.role.clone(), length);
+                self.said.remove(&child.role);
                 child.start(now)?;
             }
         }
@@ -248,6 +254,9 @@ impl<'a> Group<'a> {
     }
 
     fn relay(&mut self, (role, line): &Words) {
+        if !line.trim().is_empty() {
+            self.said.insert(role.clone(), line.trim().to_owned());
+        }
         if line.starts_with("ampco-") {
             self.console.say(line);
         } else {
@@ -296,6 +305,11 @@ fn learner_arguments(launch: &Launch<'_>, resume: bool) -> Vec<OsString> {
         arguments.push("--resume".into());
     }
     arguments
+}
+
+/// Where a role writes its log.
+fn log(folder: &Folder, role: &str) -> PathBuf {
+    folder.logs().join(format!("{role}.log"))
 }
 
 /// The argument that every program of the group takes.

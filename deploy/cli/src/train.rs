@@ -13,6 +13,7 @@ use motion::quality::{Severity, line, severity};
 use protocol::RolloutLayout;
 use run::motion::Print;
 use run::{Config, Folder};
+use wording::count;
 
 use crate::console::say;
 use crate::evaluate::subject::Kept;
@@ -85,12 +86,12 @@ impl Train {
         );
         ready.config.write(&folder.config_path(), &comment)?;
         say(&format!(
-            "run {} in {} · {} actors × {} environments × {} steps · Ctrl-C ends it in order",
+            "run {} in {} · {} × {} × {} · Ctrl-C ends it in order",
             folder.name(),
             folder.path().display(),
-            resolved.fleet.actors,
-            resolved.fleet.environments_per_actor(),
-            resolved.fleet.steps,
+            count(resolved.fleet.actors, "actor"),
+            count(resolved.fleet.environments_per_actor(), "environment"),
+            count(resolved.fleet.steps, "step"),
         ));
         supervise::supervise(&Launch {
             folder,

@@ -199,7 +199,7 @@ fn who_is_killed_is_started_again() {
     let (status, said) = train.end();
     assert_eq!(status, Some(0), "{said}");
     assert!(
-        said.contains("scheduler was killed by signal 9; restart 1"),
+        said.contains("scheduler was killed by signal 9 (SIGKILL); restart 1"),
         "{said}"
     );
     // Without a checkpoint there is nothing that the learner could go on from.
@@ -235,7 +235,9 @@ fn a_refusal_at_the_first_start_is_passed_on_and_not_repeated() {
     assert_eq!(status, Some(1), "{said}");
     assert!(said.contains("ampco-learner: this cannot work"), "{said}");
     assert!(
-        said.contains("learner failed with status 1 and is given up"),
+        said.ends_with(
+            "ampco: learner is given up; it failed with status 1: ampco-learner: this cannot work\n"
+        ),
         "{said}"
     );
     assert_eq!(stage.lines("learner.pids").len(), 1);
@@ -250,7 +252,39 @@ fn an_actor_that_always_dies_is_given_up() {
         .end();
     assert_eq!(status, Some(1), "{said}");
     assert_eq!(stage.lines("actor.pids").len(), 5);
+    assert!(
+        said.contains("actor-0 is given up; it was killed by signal 9 (SIGKILL); somebody sent it, or the kernel"),
+        "{said}"
+    );
     stage.assert_nothing_is_left();
+}
+
+#[test]
+fn an_empty_log_is_not_pointed_to() {
+    let log = "mkdir -p $run/logs\n: >> $run/logs/learner.log\n";
+    let silent = Stage::new(OBEDIENT, &format!("{log}ready\nexit 1\n"), OBEDIENT);
+    let (status, said) = silent.train(&[]).end();
+    assert_eq!(status, Some(1), "{said}");
+    let last = said.lines().last().unwrap_or_default();
+    assert!(
+        last.contains("learner is given up; it failed with status 1; it said nothing and "),
+        "{said}"
+    );
+    assert!(
+        last.ends_with("logs/learner.log is empty") && !last.contains("see "),
+        "{said}"
+    );
+    silent.assert_nothing_is_left();
+
+    let writes = format!("{log}echo why >> $run/logs/learner.log\nready\nexit 1\n");
+    let logged = Stage::new(OBEDIENT, &writes, OBEDIENT);
+    let (_, said) = logged.train(&[]).end();
+    let last = said.lines().last().unwrap_or_default();
+    assert!(
+        last.contains("it failed with status 1; see ") && last.ends_with("logs/learner.log"),
+        "{said}"
+    );
+    logged.assert_nothing_is_left();
 }
 
 #[test]

@@ -3,12 +3,14 @@
 //! Separate because speed without it is worth nothing. The computing is in `fidelity`; this file runs
 //! it, prints the table, and carries cases and traces to and from another simulator by files.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
 use fidelity::{Engine, Row, Traces, case, cases, markdown, measure, rows};
 use serde_json::{Map, Value, json};
+
+use crate::console::say;
+use crate::file;
 
 /// Errors of the physics engines in the same cases, as a Markdown table
 #[derive(Debug, clap::Args)]
@@ -29,6 +31,7 @@ pub(crate) struct FidelityBench {
 
 impl FidelityBench {
     pub(crate) fn run(&self) -> Result<Value> {
+        self.cases.as_deref().map(file::check_place).transpose()?;
         let (cases, stress) = (cases::all(), cases::stress(self.robots));
         if let Some(path) = &self.cases {
             let document = json!({
@@ -43,7 +46,7 @@ impl FidelityBench {
                 "cases": cases,
                 "stress": stress,
             });
-            write(path, document.to_string().as_bytes())?;
+            file::write(path, document.to_string().as_bytes())?;
             return Ok(json!({ "cases": path }));
         }
         // Read first: a wrong file should not cost a minute.
@@ -58,8 +61,7 @@ impl FidelityBench {
             .iter()
             .map(|traces| (traces.engine.as_str(), rows(traces)))
             .collect();
-        let mut err = std::io::stderr().lock();
-        writeln!(err, "{}", markdown(&judged)).context("writing to standard error")?;
+        say(&markdown(&judged));
         let engines: Map<String, Value> = judged
             .iter()
             .map(|(engine, rows)| ((*engine).to_owned(), json!(rows)))
@@ -70,25 +72,11 @@ impl FidelityBench {
 
 fn read(path: &Path) -> Result<Traces> {
     let text = std::fs::read(path).with_context(|| format!("reading {}", path.display()))?;
-    serde_json::from_slice(&text).with_context(|| {
-        format!(
-            "{} holds no traces; let deploy/fidelity.py write them",
-            path.display()
+    serde_json::from_slice(&text).map_err(|error| {
+        anyhow!(
+            "{} holds no traces ({}); let deploy/fidelity.py write them",
+            path.display(),
+            wording::said(&error.to_string())
         )
     })
-}
-
-/// Beside, synced, then renamed: a file of that name is always whole.
-fn write(path: &Path, bytes: &[u8]) -> Result<()> {
-    let mut name = path
-        .file_name()
-        .with_context(|| format!("{} names no file; give --cases a file", path.display()))?
-        .to_owned();
-    name.push(".new");
-    let new = path.with_file_name(name);
-    let writing = || format!("writing {}", new.display());
-    let mut file = std::fs::File::create(&new).with_context(writing)?;
-    file.write_all(bytes).with_context(writing)?;
-    file.sync_all().with_context(writing)?;
-    std::fs::rename(&new, path).with_context(|| format!("renaming {}", new.display()))
 }

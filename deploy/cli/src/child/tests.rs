@@ -65,8 +65,69 @@ fn who_ends_well_is_not_started_again() {
 
 #[test]
 fn ends_are_named() {
-    assert_eq!(describe(killed()), "was killed by signal 9");
+    assert_eq!(describe(killed()), "was killed by signal 9 (SIGKILL)");
+    // A real-time signal has no name.
+    let nameless = ExitStatus::from_raw(40);
+    assert_eq!(describe(nameless), "was killed by signal 40");
     assert_eq!(describe(failed(3)), "failed with status 3");
+}
+
+#[test]
+fn an_empty_log_is_not_pointed_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("learner.log");
+    let of = |status, said, before| account(status, said, &log, before);
+    let missing = of(killed(), None, 0);
+    assert!(
+        missing.starts_with("was killed by signal 9 (SIGKILL); somebody sent it, or the kernel")
+    );
+    assert!(
+        missing.ends_with("learner.log was never made") && !missing.contains("see "),
+        "{missing}"
+    );
+    std::fs::write(&log, "").unwrap();
+    let empty = of(failed(1), None, 0);
+    assert!(
+        empty.starts_with("failed with status 1; it said nothing and "),
+        "{empty}"
+    );
+    assert!(
+        empty.ends_with("learner.log is empty") && !empty.contains("see "),
+        "{empty}"
+    );
+    let spoken = of(failed(1), Some("no motion"), 0);
+    assert_eq!(spoken, "failed with status 1: no motion");
+    std::fs::write(&log, "0123456789").unwrap();
+    let silent = of(failed(3), None, 10);
+    assert!(silent.contains("nothing of this time is in "), "{silent}");
+    let logged = of(failed(3), None, 4);
+    assert_eq!(
+        logged,
+        format!("failed with status 3; see {}", log.display())
+    );
+    let both = of(failed(3), Some("no"), 4);
+    assert_eq!(
+        both,
+        format!("failed with status 3: no; see {}", log.display())
+    );
+}
+
+#[test]
+fn last_words_are_the_complaint_or_the_last_line_of_this_life() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("run.log");
+    assert_eq!(last_words(&log, 0), None);
+    let old = "ampco: an old complaint\n";
+    std::fs::write(&log, old).unwrap();
+    assert_eq!(last_words(&log, old.len() as u64), None);
+    std::fs::write(&log, format!("{old}one\ntwo\n\n")).unwrap();
+    assert_eq!(last_words(&log, old.len() as u64).unwrap(), "two");
+    std::fs::write(&log, format!("{old}ampco: no disk\ntwo\n")).unwrap();
+    assert_eq!(
+        last_words(&log, old.len() as u64).unwrap(),
+        "ampco: no disk"
+    );
+    assert_eq!(last_words(&log, 1_000), None);
 }
 
 #[test]

@@ -8,6 +8,7 @@ use anyhow::{Context, Result};
 use serde::Serialize;
 use serde_json::Value;
 use sim::Physics;
+use wording::count;
 
 use super::episodes::Conditions;
 use super::reference::Nearest;
@@ -119,10 +120,10 @@ impl Report {
             None => "judged by its own discriminator".to_owned(),
         };
         format!(
-            "{}, iteration {}: {} episodes of {} s each, seed {}, {}; style {judge}",
+            "{}, iteration {}: {} of {} s each, seed {}, {}; style {judge}",
             self.checkpoint.display(),
             self.iteration,
-            self.episodes,
+            count(self.episodes, "episode"),
             self.seconds,
             self.seed,
             match self.physics {

@@ -11,8 +11,10 @@ use motion::quality::{Defect, Examination, Severity, paragraph, severity, speeds
 use motion::strata::{STRATUM, stratum};
 use motion::{Clip, FRAME_SECONDS};
 use serde_json::{Value, json};
+use wording::count;
 
 use super::files::Sources;
+use crate::console;
 
 /// A speed within the set's range with less than this share of an even share is rare.
 const RARE: f64 = 0.2;
@@ -67,7 +69,7 @@ impl Check {
                 .map(|(clip, _)| clip),
         );
         let rare = rare(&seconds);
-        let mut out = std::io::stdout().lock();
+        let mut out = console::results();
         if self.json {
             writeln!(out, "{}", summary(&clips, &seconds, &rare, &faults))?;
         } else {
@@ -176,8 +178,8 @@ fn show(
     };
     writeln!(
         out,
-        "{} clips{without}, {:.1} min",
-        clips.len(),
+        "{}{without}, {:.1} min",
+        count(clips.len(), "clip"),
         total / 60.0
     )?;
     writeln!(out, "      m/s        s    share")?;

@@ -4,7 +4,6 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -15,8 +14,9 @@ use anyhow::{Context, Result};
 use clap::Args;
 use motion::import::{self, Format, Imported, Options};
 use motion::{Clip, MotionError, QuaternionOrder};
+use wording::count;
 
-use crate::console::Console;
+use crate::console::{Console, say};
 use crate::failure::usage;
 
 /// What motion files end in: a folder is searched for these.
@@ -45,6 +45,9 @@ pub(super) struct Sources {
     /// Skeleton (.asf) of .amc files, instead of the one beside them
     #[arg(long, value_name = "FILE")]
     skeleton: Option<PathBuf>,
+    /// Files at a time; what comes of them does not depend on it [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
     /// Leave a robot's motion at the height that the file gives it
     #[arg(long)]
     no_ground: bool,
@@ -67,6 +70,24 @@ pub(super) struct Read {
     pub(super) seconds: f64,
 }
 
+impl Source {
+    fn read(&self, options: &Options) -> Read {
+        let began = Instant::now();
+        let outcome = import::import(&self.path, options).map(|imported| Imported {
+            clip: Clip {
+                name: self.name.clone(),
+                ..imported.clip
+            },
+            ..imported
+        });
+        Read {
+            source: self.clone(),
+            outcome,
+            seconds: began.elapsed().as_secs_f64(),
+        }
+    }
+}
+
 impl Sources {
     /// Reads all files, several at once, in their order; progress goes to standard error.
     pub(super) fn read(&self) -> Result<Vec<Read>> {
@@ -77,37 +98,31 @@ impl Sources {
 
     /// Reads files that were found.
     pub(super) fn read_found(&self, sources: Vec<Source>) -> Vec<Read> {
+        self.each(&sources, |_, read| read)
+    }
+
+    /// Reads files and does `work` with each and its place, several at once; what comes of it is in the order of the
+    /// files, whoever was quicker. Progress goes to standard error.
+    pub(super) fn each<T: Send>(
+        &self,
+        sources: &[Source],
+        work: impl Fn(usize, Read) -> T + Sync,
+    ) -> Vec<T> {
         let options = self.options();
         let next = AtomicUsize::new(0);
-        let workers = thread::available_parallelism()
-            .map_or(1, usize::from)
-            .min(sources.len());
-        let mut reads: Vec<Option<Read>> = Vec::new();
-        reads.resize_with(sources.len(), || None);
+        let mut done: Vec<Option<T>> = Vec::new();
+        done.resize_with(sources.len(), || None);
         thread::scope(|scope| {
-            let (send, done) = mpsc::channel();
-            for _ in 0..workers {
-                let (send, sources, options, next) = (send.clone(), &sources, &options, &next);
+            let (send, results) = mpsc::channel();
+            for _ in 0..self.jobs().min(sources.len()) {
+                let send = send.clone();
+                let (options, next, work) = (&options, &next, &work);
                 scope.spawn(move || {
                     while let Some((i, source)) = {
                         let i = next.fetch_add(1, Ordering::Relaxed);
                         sources.get(i).map(|source| (i, source))
                     } {
-                        let began = Instant::now();
-                        let outcome =
-                            import::import(&source.path, options).map(|imported| Imported {
-                                clip: Clip {
-                                    name: source.name.clone(),
-                                    ..imported.clip
-                                },
-                                ..imported
-                            });
-                        let read = Read {
-                            source: source.clone(),
-                            outcome,
-                            seconds: began.elapsed().as_secs_f64(),
-                        };
-                        if send.send((i, read)).is_err() {
+                        if send.send((i, work(i, source.read(options)))).is_err() {
                             return; // nobody waits any more
                         }
                     }
@@ -115,21 +130,23 @@ impl Sources {
             }
             drop(send);
             let mut console = Console::new();
-            for (count, (i, read)) in done.into_iter().enumerate() {
+            let all = count(sources.len(), "file");
+            for (before, (i, result)) in results.into_iter().enumerate() {
                 if sources.len() > 1 {
-                    let line = format!(
-                        "read {} of {} files · {}",
-                        count + 1,
-                        sources.len(),
-                        read.source.name
-                    );
+                    let line = format!("read {} of {all} · {}", before + 1, sources[i].name);
                     console.show(&line, Instant::now());
                 }
-                reads[i] = Some(read);
+                done[i] = Some(result);
             }
             console.finish();
         });
-        reads.into_iter().flatten().collect()
+        done.into_iter().flatten().collect()
+    }
+
+    /// How many files at a time.
+    fn jobs(&self) -> usize {
+        let cores = || thread::available_parallelism().map_or(1, usize::from);
+        self.jobs.map_or_else(cores, usize::from)
     }
 
     /// All files that are read, skeletons among them.
@@ -205,16 +222,11 @@ fn say_passed(passed: &[PathBuf]) {
         .map(|path| path.display().to_string())
         .collect();
     let more = if passed.len() > SHOWN { ", …" } else { "" };
-    let count = match passed.len() {
-        1 => "1 file".to_owned(),
-        many => format!("{many} files"),
-    };
-    // Nobody has to read it: a closed standard error stops no import.
-    let _ = writeln!(
-        io::stderr(),
-        "passed over {count} with the shape of a body and no motion: {}{more}",
+    say(&format!(
+        "passed over {} with the shape of a body and no motion: {}{more}",
+        count(passed.len(), "file"),
         shown.join(", ")
-    );
+    ));
 }
 
 /// Motion files below a folder, sorted; their names carry the folders between.

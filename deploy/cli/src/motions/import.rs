@@ -3,21 +3,22 @@
 //! Beside every clip `<name>.json` says where it comes from, what was decided and done, and how good
 //! it is, so that a training set can be judged years later.
 
+mod outcome;
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use motion::import::Imported;
-use motion::quality::{Examination, paragraph};
+use motion::quality::Examination;
 use serde_json::{Value, json};
+use wording::count;
 
 use super::files::{Read, Source, Sources};
 use super::output::{self, Output, WRITTEN_BY};
-use super::table;
+use crate::console;
 use crate::failure::usage;
-
-/// Decisions are printed for so many files; for more they are in the reports only.
-const TOLD: usize = 6;
+use outcome::{Outcome, Written};
 
 /// The arguments.
 #[derive(Debug, clap::Args)]
@@ -30,7 +31,7 @@ pub(super) struct Import {
     /// Tell what was decided and done for every file, however many
     #[arg(long)]
     verbose: bool,
-    /// End with one JSON array, an object per clip
+    /// End with one JSON array, an object per file: what it became, or why it failed
     #[arg(long)]
     json: bool,
 }
@@ -39,53 +40,60 @@ impl Import {
     pub(super) fn run(&self) -> Result<()> {
         let sources = self.found()?;
         let outputs: Vec<Output> = sources.iter().map(|s| output(&self.out, s)).collect();
+        let is_new = !self.out.exists();
         output::claim(&self.out, &outputs, &self.sources.files(&sources))?;
-        let reads = self.sources.read_found(sources);
-        let mut out = std::io::stdout().lock();
-        let verbose = self.verbose || reads.len() <= TOLD;
-        let (mut rows, mut failures) = (Vec::new(), Vec::new());
-        if !self.json && reads.iter().any(|read| read.outcome.is_ok()) {
-            writeln!(out, "{}", table::HEADING)?;
+        let outcomes = self
+            .sources
+            .each(&sources, |i, read| carry_out(read, &outputs[i]));
+        if is_new && outcomes.iter().all(|outcome| outcome.written().is_none()) {
+            // Nothing came into it. It is not ours any more if somebody else put something there.
+            let _ = std::fs::remove_dir(&self.out);
         }
-        for (read, output) in reads.iter().zip(&outputs) {
-            let imported = match &read.outcome {
-                Ok(imported) => imported,
-                Err(error) => {
-                    failures.push(describe(error));
-                    continue;
-                }
-            };
-            let found = Examination::of(imported, &read.source.path);
-            let report = report(read, imported, &found);
-            write(output, imported, &report)?;
-            if self.json {
-                rows.push(report);
-                continue;
-            }
-            writeln!(out, "{}", table::line(&imported.clip.name, &found.quality))?;
-            if verbose {
-                tell(&mut out, imported)?;
-            }
-            if !found.defects.is_empty() {
-                writeln!(out, "{}", paragraph(&imported.clip.name, &found.defects))?;
-            }
-        }
+        let mut out = console::results();
         if self.json {
+            let rows = outcomes.iter().map(Outcome::row).collect();
             writeln!(out, "{}", Value::Array(rows))?;
-        } else if failures.len() < reads.len() {
-            summary(&mut out, &reads, &self.out, verbose)?;
+        } else {
+            outcome::show(&mut out, &outcomes, &self.out, self.verbose)?;
         }
-        match failures.as_slice() {
-            [] => Ok(()),
-            [only] if reads.len() == 1 => bail!("{only}"),
-            _ => bail!(
-                "{} of {} files were not imported:\n{}",
+        out.flush().context("writing to standard output")?;
+        let failures: Vec<&str> = outcomes.iter().filter_map(Outcome::problem).collect();
+        match (failures.as_slice(), outcomes.len()) {
+            ([], _) => Ok(()),
+            ([only], 1) => bail!("{only}"),
+            (failures, all) => bail!(
+                "{} of {} not imported:\n  {}",
                 failures.len(),
-                reads.len(),
-                failures.join("\n")
+                count(all, "file"),
+                failures.join("\n  ")
             ),
         }
     }
+}
+
+/// Everything that is to be done with a file; done by many threads at once.
+fn carry_out(read: Read, output: &Output) -> Outcome {
+    let source = read.source;
+    let failed = |problem| Outcome::Failed {
+        source: source.clone(),
+        problem,
+    };
+    let imported = match read.outcome {
+        Ok(imported) => imported,
+        Err(error) => return failed(describe(&error)),
+    };
+    let found = Examination::of(&imported, &source.path);
+    let report = report(&source, &imported, &found);
+    if let Err(error) = write(output, &imported, &report) {
+        return failed(format!("{}: {error:#}", source.path.display()));
+    }
+    Outcome::Written(Box::new(Written {
+        quality: found.quality,
+        defects: found.defects,
+        imported,
+        report,
+        seconds: read.seconds,
+    }))
 }
 
 /// An error and its causes in a line.
@@ -108,17 +116,17 @@ impl Import {
             .into_iter()
             .partition(|s| s.searched && output::is_output(&s.path, &self.out));
         if !written.is_empty() {
-            let (count, out) = (written.len(), self.out.display());
+            let out = self.out.display();
             if sources.is_empty() {
                 return Err(usage(format!(
                     "only clips that were written to {out} before are there; give motion files, or \
                      another --out"
                 )));
             }
-            writeln!(
-                std::io::stderr(),
-                "passed over: {count} of the files were written to {out} before"
-            )?;
+            console::say(&format!(
+                "passed over: {} of the files written to {out} before",
+                written.len()
+            ));
         }
         Ok(sources)
     }
@@ -138,14 +146,14 @@ fn write(output: &Output, imported: &Imported, report: &Value) -> Result<()> {
     output.write(&imported.clip, &[format!("format {}", imported.format)])
 }
 
-fn report(read: &Read, imported: &Imported, found: &Examination) -> Value {
+fn report(source: &Source, imported: &Imported, found: &Examination) -> Value {
     // A table that was imported before brings its account along.
     let retargeting = found.account.report();
     let (written_by, this) = WRITTEN_BY;
     json!({
         written_by: this,
         "name": imported.clip.name,
-        "source": read.source.path.display().to_string(),
+        "source": source.path.display().to_string(),
         "format": imported.format,
         "frames": imported.frames,
         "fps": imported.fps,
@@ -154,57 +162,7 @@ fn report(read: &Read, imported: &Imported, found: &Examination) -> Value {
         "actions": retargeting.map(retarget::Report::actions),
         "quality": found.quality,
         "defects": found.defects,
-        "frames_per_second_and_core": found.quality.frames as f64 / read.seconds,
     })
-}
-
-/// What was decided and done.
-fn tell(out: &mut impl Write, imported: &Imported) -> Result<()> {
-    for decision in &imported.decisions {
-        writeln!(out, "    {decision}")?;
-    }
-    if let Some(report) = &imported.retargeting {
-        for action in report.actions() {
-            writeln!(out, "    {action}")?;
-        }
-        writeln!(
-            out,
-            "    tracking: bones are off by {:.1}° (median), {:.1}° (95 %); speed {:.2} m/s of {:.2} m/s scaled",
-            report.direction_error, report.direction_error_95, report.speed, report.scaled_speed
-        )?;
-    }
-    Ok(())
-}
-
-fn summary(out: &mut impl Write, reads: &[Read], folder: &Path, verbose: bool) -> Result<()> {
-    let done = reads
-        .iter()
-        .filter_map(|read| Some((read.outcome.as_ref().ok()?, read.seconds)));
-    let (mut clips, mut frames, mut seconds) = (0, 0, 0.0);
-    for (imported, time) in done {
-        clips += 1;
-        frames += imported.clip.frames.len();
-        seconds += time;
-    }
-    let rate = frames as f64 / f64::max(seconds, 1e-9);
-    let minutes = frames as f64 / 50.0 / 60.0;
-    writeln!(
-        out,
-        "{clips} clips, {minutes:.1} min, in {}; {rate:.0} frames a second and core",
-        folder.display()
-    )?;
-    if !verbose {
-        writeln!(
-            out,
-            "what was decided and done is in the .json beside each clip"
-        )?;
-    }
-    writeln!(
-        out,
-        "train on them: ampco train --set 'motion.clips=[{{folder=\"{}\"}}]'",
-        folder.display()
-    )?;
-    Ok(())
 }
 
 #[cfg(test)]

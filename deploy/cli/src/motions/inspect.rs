@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 
 use super::files::{self, Sources};
 use super::{plots, table};
+use crate::console;
 
 /// The arguments.
 #[derive(Debug, clap::Args)]
@@ -31,7 +32,7 @@ impl Inspect {
         if let Some(folder) = &self.plots {
             files::make_folder(folder)?;
         }
-        let mut out = std::io::stdout().lock();
+        let mut out = console::results();
         let (mut rows, mut failures) = (Vec::new(), Vec::new());
         if !self.json {
             writeln!(out, "{}", table::HEADING)?;

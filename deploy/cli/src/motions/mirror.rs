@@ -9,6 +9,7 @@ use motion::{Clip, Quality};
 use super::files::{Source, Sources};
 use super::output::{self, Output};
 use super::table;
+use crate::console;
 
 /// The arguments.
 #[derive(Debug, clap::Args)]
@@ -26,7 +27,7 @@ impl Mirror {
         let outputs: Vec<Output> = sources.iter().map(|s| output(&self.out, s)).collect();
         output::claim(&self.out, &outputs, &self.sources.files(&sources))?;
         let reads = self.sources.read_found(sources);
-        let mut out = std::io::stdout().lock();
+        let mut out = console::results();
         writeln!(out, "{}", table::HEADING)?;
         let mut failures = Vec::new();
         for (read, output) in reads.into_iter().zip(&outputs) {

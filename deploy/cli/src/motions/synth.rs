@@ -8,6 +8,7 @@ use motion::{Clip, Quality, gait};
 
 use super::output::{self, Output};
 use super::table;
+use crate::console;
 use crate::failure::usage;
 
 /// The arguments.
@@ -46,7 +47,7 @@ impl Synth {
         let clips = self.clips()?;
         let outputs: Vec<Output> = clips.iter().map(|c| self.output(c)).collect();
         output::claim(&self.out, &outputs, &[])?;
-        let mut out = std::io::stdout().lock();
+        let mut out = console::results();
         writeln!(out, "{}", table::HEADING)?;
         for (clip, output) in clips.iter().zip(&outputs) {
             output.write(clip, &[])?;

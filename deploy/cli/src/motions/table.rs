@@ -18,6 +18,7 @@ pub(super) fn line(name: &str, quality: &Quality) -> String {
     } else {
         name.to_owned()
     };
+    let shown = wording::line(&shown);
     format!(
         "{shown:<26} {:8.2} {:6.2}  {:6.3}  {:5.1}  {:4.2}  {:6.2}  {:4.2}  {:>6}",
         quality.seconds,

@@ -90,11 +90,10 @@ impl Group {
             return Ok(());
         };
         if status.signal() != Some(Signal::KILL.as_raw()) {
-            bail!(
-                "ampco train {}; see {}",
-                child::describe(status),
-                self.folder.logs().join("train.log").display()
-            );
+            let log = self.folder.logs().join("train.log");
+            let said = child::last_words(&log, 0);
+            let account = child::account(status, said.as_deref(), &log, 0);
+            bail!("ampco train {account}");
         }
         self.train = start(&self.place, &self.folder, &["--resume".to_owned()])?;
         Ok(())

@@ -9,6 +9,7 @@ use protocol::Domain;
 use run::journal::{self, Account, Entry};
 use run::{Folder, journal::account::account};
 use serde_json::{Value, json};
+use wording::count;
 
 use super::PROMISED_SECONDS;
 
@@ -92,13 +93,13 @@ impl Outcome {
         }
         if self.account.uncounted > 0 {
             let uncounted = self.account.uncounted;
-            failures.push(format!("{uncounted} rollouts are unaccounted for"));
+            failures.push(format!("unaccounted for: {}", count(uncounted, "rollout")));
         }
         if self.account.sent == 0 {
             failures.push("nothing was sent".to_owned());
         }
         if self.left_bytes > 0 {
-            failures.push(format!("{} bytes are left", self.left_bytes));
+            failures.push(format!("left over: {}", count(self.left_bytes, "byte")));
         }
         if !self.alive.is_empty() {
             failures.push(format!("still alive: {}", self.alive.join(", ")));

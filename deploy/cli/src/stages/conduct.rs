@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail};
 use run::Folder;
 use rustix::process::{Pid, Signal, kill_process};
 use tokio::process::{Child, Command};
+use wording::count;
 
 use super::plan::{Plan, Planned};
 use crate::child;
@@ -28,13 +29,13 @@ pub(super) fn conduct(plan: &Plan, place: &Place) -> Result<()> {
         }
         let all = plan.stages.len();
         for (i, stage) in plan.stages.iter().enumerate() {
-            let (run, iterations) = (&stage.run, stage.iterations);
+            let (run, iterations) = (&stage.run, count(stage.iterations, "iteration"));
             if done(stage, place)? {
-                say(&format!("stage {} of {all}: {run} has its {iterations} iterations", i + 1));
+                say(&format!("stage {} of {all}: {run} has its {iterations}", i + 1));
                 continue;
             }
             let before = i.checked_sub(1).map(|i| plan.stages[i].run.as_str());
-            say(&format!("stage {} of {all}: {run}, {iterations} iterations", i + 1));
+            say(&format!("stage {} of {all}: {run}, {iterations}", i + 1));
             let child = start(stage, before, plan.actors, place)?;
             let (status, stopped) = follow(child, &mut stop).await?;
             // One that is asked to end before it can hear it ends by the signal itself.
@@ -51,7 +52,7 @@ pub(super) fn conduct(plan: &Plan, place: &Place) -> Result<()> {
             }
         }
         let last = plan.stages.last().map_or("", |stage| stage.run.as_str());
-        say(&format!("all {all} stages are done; how well it walks: `ampco evaluate {last}`"));
+        say(&format!("{} done; how well it walks: `ampco evaluate {last}`", count(all, "stage")));
         Ok(())
     })
 }

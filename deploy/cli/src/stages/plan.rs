@@ -5,9 +5,10 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use run::Config;
 use serde::Deserialize;
+use wording::count;
 
 use crate::failure::usage;
-use crate::{presets, resolve};
+use crate::{file, presets, resolve};
 
 /// Those that come with the program, by name.
 const EMBEDDED: [(&str, &str); 3] = [
@@ -80,8 +81,7 @@ impl Plan {
         let (text, beside) = match own {
             Some((_, text)) => ((*text).to_owned(), None),
             None if path.is_file() => {
-                let text = std::fs::read_to_string(path);
-                let text = text.with_context(|| format!("reading {which}"))?;
+                let text = file::read_text(path)?;
                 (text, Some(path.parent().unwrap_or(Path::new("."))))
             }
             None => {
@@ -111,15 +111,15 @@ impl Plan {
         let mut lines = vec![self.title.clone()];
         for stage in &self.stages {
             lines.push(format!(
-                "{}: preset {}{}, {} iterations of {} transitions",
+                "{}: preset {}{}, {} of {}",
                 stage.run,
                 stage.preset,
                 stage
                     .set
                     .iter()
                     .fold(String::new(), |all, one| all + " " + one),
-                stage.iterations,
-                stage.rows,
+                count(stage.iterations, "iteration"),
+                count(stage.rows, "transition"),
             ));
         }
         let all: u64 = self
@@ -127,7 +127,11 @@ impl Plan {
             .iter()
             .map(|stage| u64::from(stage.iterations) * stage.rows)
             .sum();
-        lines.push(format!("{} runs, {all} transitions", self.stages.len()));
+        lines.push(format!(
+            "{}, {}",
+            count(self.stages.len(), "run"),
+            count(all, "transition")
+        ));
         lines.join("\n")
     }
 }
@@ -197,7 +201,8 @@ pub(super) fn list() -> String {
 }
 
 fn parse(text: &str) -> Result<File, String> {
-    let mut file: File = toml::from_str(text).map_err(|error| error.to_string())?;
+    let mut file: File = toml::from_str(text)
+        .map_err(|error| wording::refusal(text, error.span(), error.message()))?;
     if file.stages.is_empty() {
         return Err("stages: none; write at least one".into());
     }

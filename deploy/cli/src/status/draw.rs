@@ -161,7 +161,7 @@ fn now(board: &Board) -> Vec<Line<'static>> {
         )),
         Line::from(figures::terms(newest).unwrap_or_default()),
         Line::from(format!(
-            "{} rollouts of {} actors · lag {} · dropped {} · stale {} · duplicated {} · waiting {} s · missed here {}",
+            "rollouts {} · actors {} · lag {} · dropped {} · stale {} · duplicated {} · waiting {} s · missed here {}",
             figure("rollouts"),
             figure("actors"),
             figure("policy_lag"),

@@ -17,10 +17,12 @@ use std::path::{Path, PathBuf};
 use ::study::{Cell, StudyFile};
 use anyhow::{Context, Result, anyhow};
 use run::{Folder, FolderError, Lock};
+use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use super::plan::Planned;
 use crate::failure::usage;
+use crate::file;
 
 /// Name of the file that lists the runs.
 const RUNS: &str = "runs.json";
@@ -77,8 +79,7 @@ impl StudyFolder {
 
     pub(super) fn file(&self) -> Result<StudyFile> {
         let path = self.path.join("study.toml");
-        let text = std::fs::read_to_string(&path)
-            .with_context(|| format!("reading {}", path.display()))?;
+        let text = file::read_text(&path)?;
         StudyFile::parse(&text).map_err(|error| usage(format!("{}: {error}", path.display())))
     }
 
@@ -121,10 +122,7 @@ impl StudyFolder {
             return Ok(None);
         }
         let bytes = std::fs::read(&path).with_context(|| format!("reading {}", path.display()))?;
-        let value = serde_json::from_slice(&bytes);
-        Ok(Some(
-            value.with_context(|| format!("reading {}", path.display()))?,
-        ))
+        Ok(Some(parse_json(&bytes, &path)?))
     }
 
     pub(super) fn runs(&self) -> PathBuf {
@@ -166,6 +164,17 @@ impl StudyFolder {
         }
         .with_context(|| format!("noting the outcome of {name} in {}", path.display()))
     }
+}
+
+/// JSON, or an error that names the file and shows no more of it than a line.
+fn parse_json<T: DeserializeOwned>(bytes: &[u8], path: &Path) -> Result<T> {
+    serde_json::from_slice(bytes).map_err(|error| {
+        let said = wording::said(&error.to_string());
+        anyhow!(
+            "{} cannot be read: {said}; move it away to have it made anew",
+            path.display()
+        )
+    })
 }
 
 /// The command as it was typed, and the machine.

@@ -16,6 +16,7 @@ use tokio::process::{Child, Command};
 
 use super::folder::StudyFolder;
 use super::plan::Planned;
+use crate::child;
 
 /// How far a run has come, from its folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,8 +114,6 @@ pub(super) fn signal(child: &Child, signal: Signal) {
 
 /// Why a program failed: the last thing it said.
 pub(super) fn words(status: ExitStatus, log: &Path) -> String {
-    let said = std::fs::read_to_string(log).unwrap_or_default();
-    let last = said.lines().rev().find(|line| line.starts_with("ampco: "));
-    let last = last.or(said.lines().last()).unwrap_or("it said nothing");
-    format!("{}: {last}", crate::child::describe(status))
+    let said = child::last_words(log, 0);
+    child::account(status, said.as_deref(), log, 0)
 }

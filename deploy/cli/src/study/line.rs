@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use ::study::outlook::{Progress, seconds_left};
+use wording::count;
 
 use crate::console::BETWEEN;
 use crate::figures::clock;
@@ -28,7 +29,7 @@ pub(super) struct Stand {
 impl Stand {
     pub(super) fn line(&self) -> String {
         let done = self.runs.iter().filter(|run| run.done >= run.of).count();
-        let mut parts = vec![format!("{done} of {} runs done", self.runs.len())];
+        let mut parts = vec![format!("{done} of {} done", count(self.runs.len(), "run"))];
         if self.failed > 0 {
             parts.push(format!("{} failed", self.failed));
         }

@@ -5,6 +5,7 @@ use std::path::Path;
 use ::study::{Cell, StudyFile, matrix};
 use anyhow::{Context, Result};
 use run::{Config, RunConfig};
+use wording::count;
 
 use super::folder::StudyFolder;
 use crate::failure::usage;
@@ -137,13 +138,19 @@ pub(super) fn describe(planned: &[Planned]) -> String {
         .map(|run| {
             let samples = run.target * run.rows;
             format!(
-                "{}: {} iterations of {} transitions, {samples} in all",
-                run.name, run.target, run.rows
+                "{}: {} of {}, {samples} in all",
+                run.name,
+                count(run.target, "iteration"),
+                count(run.rows, "transition")
             )
         })
         .collect();
     let all: u64 = planned.iter().map(|run| run.target * run.rows).sum();
-    lines.push(format!("{} runs, {all} transitions", planned.len()));
+    lines.push(format!(
+        "{}, {}",
+        count(planned.len(), "run"),
+        count(all, "transition")
+    ));
     lines.join("\n")
 }
 

@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use ::study::{Benchmark, Evaluation, Measured, Record, Results, Run, State, matrix};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
 use run::motion::{Print, differences};
 use run::{FleetConfig, Folder, metrics};
+use wording::count;
 
 use super::folder::StudyFolder;
 use super::judgement::Judgement;
 use super::plan::target_of;
-use crate::figures::count;
 
 /// Reads every run of the study; `to_study` leads from the report to the study's folder.
 pub(super) fn results(folder: &StudyFolder, to_study: &str) -> Result<Results> {
@@ -47,7 +47,7 @@ pub(super) fn results(folder: &StudyFolder, to_study: &str) -> Result<Results> {
     let benchmark: Option<Benchmark> = benchmark
         .map(serde_json::from_value)
         .transpose()
-        .context("reading overhead.json")?;
+        .map_err(|error| anyhow!("overhead.json: {}", wording::said(&error.to_string())))?;
     Ok(Results {
         entries: matrix::entries(&cells),
         facts: facts(folder, &runs, otherwise)?,
@@ -76,10 +76,11 @@ fn fill(run: &mut Run, folder: &Folder, evaluate: Option<&Evaluation>) -> Result
     let rows = Judgement::read(folder)?.and_then(|judgement| judgement.rows(folder, evaluate));
     let otherwise = there && evaluate.is_some() && rows.is_none();
     for row in rows.into_iter().flatten() {
-        let judged = serde_json::from_value(row);
-        run.judged.push(
-            judged.with_context(|| format!("reading {}", Judgement::path(folder).display()))?,
-        );
+        let judged = serde_json::from_value(row).map_err(|error| {
+            let path = Judgement::path(folder);
+            anyhow!("{}: {}", path.display(), wording::said(&error.to_string()))
+        });
+        run.judged.push(judged?);
     }
     Ok(otherwise)
 }
@@ -103,7 +104,11 @@ fn facts(folder: &StudyFolder, runs: &[Run], otherwise: usize) -> Result<Vec<(St
         tell("command", text("command"));
         tell(
             "machine",
-            format!("{}, {} cores", text("processor"), origin["cores"]),
+            format!(
+                "{}, {}",
+                text("processor"),
+                count(origin["cores"].as_u64().unwrap_or(0), "core")
+            ),
         );
     }
     for words in other_motion(folder, runs)? {

@@ -6,9 +6,11 @@ use anyhow::{Context, Result, bail};
 use protocol::DomainError;
 use rustix::process::Signal;
 use tokio::time::{interval, sleep};
+use wording::count;
 
 use super::stop::Stop;
 use super::{Group, LEARNER, LOOK, Reason, is_actor};
+use crate::child;
 use crate::figures::clock;
 
 /// Actors that the learner has told to save and stop get this long before they are told again.
@@ -20,7 +22,7 @@ impl Group<'_> {
         if !matches!(reason, Reason::Complete) {
             self.console.say(match &reason {
                 Reason::TimeUp => "time is up: finishing the iteration",
-                Reason::Failed(_) => "ending the group",
+                Reason::Failed(_) | Reason::GivenUp(..) => "ending the group",
                 _ => "ending: finishing the iteration (once more to kill at once)",
             });
         }
@@ -32,7 +34,7 @@ impl Group<'_> {
         let saved = self
             .until_ended(patience, stop, |role| role == LEARNER)
             .await?;
-        if saved && !matches!(reason, Reason::Failed(_)) {
+        if saved && !matches!(reason, Reason::Failed(_) | Reason::GivenUp(..)) {
             self.until_ended(GRACE.min(patience), stop, is_actor)
                 .await?;
         }
@@ -54,6 +56,13 @@ impl Group<'_> {
         self.report(&reason, &killed);
         match reason {
             Reason::Failed(error) => Err(error),
+            Reason::GivenUp(role, status) => {
+                let log = super::log(self.launch.folder, &role);
+                let before = self.logged.get(&role).copied().unwrap_or(0);
+                let said = self.said.get(&role).map(String::as_str);
+                let account = child::account(status, said, &log, before);
+                bail!("{role} is given up; it {account}")
+            }
             _ if forced => Ok(()),
             _ => self.nothing_lost(),
         }
@@ -134,14 +143,15 @@ impl Group<'_> {
         let what = match reason {
             Reason::Complete => "complete",
             Reason::TimeUp | Reason::Asked => "ended",
-            Reason::Failed(_) => "failed",
+            Reason::Failed(_) | Reason::GivenUp(..) => "failed",
         };
         let run = self.launch.folder.name();
         let mut report = format!("run {run} {what} after {}", clock(self.started.elapsed()));
         if let Some(figures) = &self.pace.newest {
             report += &format!(
-                " at iteration {}, {} samples",
-                figures.iteration, figures.samples
+                " at iteration {}, {}",
+                figures.iteration,
+                count(figures.samples, "sample")
             );
         }
         report += &match self.launch.folder.checkpoints().list().last() {

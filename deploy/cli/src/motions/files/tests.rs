@@ -11,6 +11,7 @@ fn sources(paths: Vec<PathBuf>) -> Sources {
         force_fps: false,
         quaternion: None,
         skeleton: None,
+        jobs: None,
         no_ground: false,
     }
 }

@@ -1,9 +1,9 @@
 //! What a study says: how far its runs are, and how it ended.
 
 use anyhow::{Context, Result, anyhow};
+use wording::count;
 
 use super::{Conductor, Job, Task};
-use crate::figures::count;
 use crate::study::line::{Going, Stand};
 
 impl Conductor<'_> {
@@ -44,8 +44,10 @@ impl Conductor<'_> {
             .count();
         let all = self.progress.len();
         if self.stopping {
-            let message =
-                format!("stopped: {done} of {all} runs are done; the same command goes on");
+            let message = format!(
+                "stopped: {done} of {} done; the same command goes on",
+                count(all, "run")
+            );
             self.console.say(&message);
             return Ok(());
         }
@@ -61,8 +63,9 @@ impl Conductor<'_> {
             return Ok(());
         }
         Err(anyhow!(
-            "{} of {all} runs failed: {}; see {path}/logs, and give the same command to try them again",
+            "{} of {} failed: {}; see {path}/logs, and give the same command to try them again",
             self.failures.len(),
+            count(all, "run"),
             self.failures.join(", ")
         ))
     }

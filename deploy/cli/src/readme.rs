@@ -1,0 +1,212 @@
+//! Every command that the README and the help texts show can be typed: it parses, its keys and presets exist, and so do the
+//! files of the repository that it names.
+
+use std::path::{Path, PathBuf};
+
+use clap::CommandFactory;
+use clap::error::ErrorKind;
+
+use super::*;
+
+#[path = "../../../tests/shell.rs"]
+mod shell;
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn readme() -> String {
+    std::fs::read_to_string(repository().join("README.md")).unwrap()
+}
+
+/// What is wrong with the arguments of a command. One within a sentence may leave out what the sentence is not about.
+fn complaint(arguments: &[String], typed: bool) -> Option<String> {
+    let given = std::iter::once("ampco").chain(arguments.iter().map(String::as_str));
+    let command = match Arguments::try_parse_from(given) {
+        Ok(arguments) => arguments.command,
+        Err(error) => {
+            let partial = matches!(
+                error.kind(),
+                ErrorKind::MissingRequiredArgument
+                    | ErrorKind::MissingSubcommand
+                    | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
+            );
+            // `ampco play --json` of a sentence.
+            let partial = partial || error.to_string().contains("a value is required for");
+            let help = matches!(
+                error.kind(),
+                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
+            );
+            return (!help && (typed || !partial)).then(|| error.to_string());
+        }
+    };
+    // A preset of a run that is still to be made is not there yet.
+    let named = |option: &str| {
+        let at = arguments.iter().position(|word| word == option)?;
+        let name = arguments.get(at + 1)?;
+        (!name.starts_with("runs/") && !is_placeholder(name)).then_some(name.as_str())
+    };
+    let found = presets::find(named("--preset").unwrap_or("ampco"));
+    let mut config = match found {
+        Ok(preset) => preset.config,
+        Err(error) => return Some(format!("{error:#}")),
+    };
+    for pair in arguments.windows(2).filter(|pair| pair[0] == "--set") {
+        let (key, value) = pair[1].split_once('=').unwrap_or_default();
+        if is_placeholder(value) || is_placeholder(key) || key == "key" {
+            continue;
+        }
+        if let Err(error) = config.set(&pair[1]) {
+            return Some(format!("{error:#}"));
+        }
+    }
+    if let Err(error) = resolve::resolve(&mut config) {
+        return Some(format!("{error:#}"));
+    }
+    if let (Command::Stages(_), Some(name)) = (&command, arguments.get(1))
+        && !name.starts_with('-')
+        && let Err(error) = stages::check(name)
+    {
+        return Some(format!("{error:#}"));
+    }
+    None
+}
+
+/// A word that a reader replaces by one of his own: `FILE`, `N`, `NAME|FILE`, `FILE…`.
+fn is_placeholder(word: &str) -> bool {
+    !word.is_empty()
+        && word
+            .chars()
+            .all(|c| c.is_ascii_uppercase() || "|…,/".contains(c))
+}
+
+/// A path of the repository that a word names, without the signs around it.
+fn path(word: &str) -> Option<&str> {
+    let path = word.split(['=', ':']).next_back()?;
+    let known = [
+        "deploy/",
+        "tests/",
+        "learner/",
+        "actor/",
+        "protocol/",
+        "scheduler/",
+    ];
+    let plain = |c: char| c.is_ascii_alphanumeric() || "/._-".contains(c);
+    (known.iter().any(|folder| path.starts_with(folder)) && path.chars().all(plain)).then_some(path)
+}
+
+#[test]
+fn every_command_of_the_readme_can_be_typed() {
+    let mut wrong = Vec::new();
+    let mut parsed = 0;
+    for command in shell::commands(&readme()) {
+        let line = command.line;
+        let shown = command.words.join(" ");
+        for path in command.words.iter().filter_map(|word| path(word)) {
+            if !repository().join(path).exists() {
+                wrong.push(format!("line {line}, {shown}: there is no {path}"));
+            }
+        }
+        let is_word = command.words.len() == 1;
+        let Some(arguments) =
+            shell::arguments(&command.words).filter(|_| command.typed || !is_word)
+        else {
+            continue;
+        };
+        parsed += 1;
+        if let Some(words) = complaint(&arguments, command.typed) {
+            wrong.push(format!("line {line}, {shown}: {words}"));
+        }
+    }
+    assert!(parsed >= 20, "only {parsed} commands were found");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_link_of_the_readme_leads_somewhere() {
+    let text = readme();
+    let mut links = 0;
+    for rest in text.split("](").skip(1) {
+        let link = rest.split(')').next().unwrap_or_default();
+        if link.contains("://") || link.starts_with('#') {
+            continue;
+        }
+        links += 1;
+        let path = link.split('#').next().unwrap_or_default();
+        assert!(repository().join(path).exists(), "there is no {path}");
+    }
+    assert!(links > 0);
+}
+
+#[test]
+fn scripts_of_the_readme_know_the_options_that_it_gives_them() {
+    for command in shell::commands(&readme()) {
+        let Some((program, arguments)) = command.words.split_first() else {
+            continue;
+        };
+        if !(program.starts_with("deploy/") && program.ends_with(".py")) {
+            continue;
+        }
+        let text = std::fs::read_to_string(repository().join(program)).unwrap();
+        for option in arguments.iter().filter(|word| word.starts_with("--")) {
+            assert!(
+                text.contains(&format!("\"{option}\"")),
+                "{program} does not know {option}"
+            );
+        }
+    }
+}
+
+/// The examples in the help of a command and of those below it.
+fn examples(command: &clap::Command, found: &mut Vec<String>) {
+    let texts = [
+        command.get_after_help(),
+        command.get_long_about(),
+        command.get_about(),
+    ];
+    for text in texts.into_iter().flatten() {
+        let text = text.to_string();
+        let lines = text
+            .lines()
+            .filter_map(|line| line.strip_prefix("  ampco "));
+        // What is behind two spaces says what the command does.
+        found.extend(lines.map(|line| line.split("  ").next().unwrap_or_default().to_owned()));
+    }
+    for command in command.get_subcommands() {
+        examples(command, found);
+    }
+}
+
+#[test]
+fn every_example_of_the_help_can_be_typed() {
+    let mut found = Vec::new();
+    examples(&Arguments::command(), &mut found);
+    assert!(found.len() >= 15, "{found:?}");
+    for example in found {
+        let words = shlex::split(&example).unwrap();
+        assert_eq!(complaint(&words, true), None, "ampco {example}");
+        for path in words.iter().filter_map(|word| path(word)) {
+            assert!(
+                repository().join(path).exists(),
+                "ampco {example}: there is no {path}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_typed_is_noticed() {
+    let complaint = |text: &str| complaint(&shlex::split(text).unwrap(), true);
+    assert_eq!(complaint("train --preset smoke --set seed=7"), None);
+    assert!(complaint("train --preset smke").unwrap().contains("smoke"));
+    assert!(
+        complaint("train --set ppo.gama=0.9")
+            .unwrap()
+            .contains("gamma")
+    );
+    assert!(complaint("train --minuts 3").is_some());
+    assert!(complaint("evaluate").is_some());
+    assert!(complaint("stages athlet").is_some());
+    assert_eq!(path("--preset=deploy/x.toml"), Some("deploy/x.toml"));
+    assert_eq!(path("runs/x"), None);
+}
