@@ -3,7 +3,9 @@
 use std::fs;
 use std::process::Command;
 
-use crate::harness::{Alone, Process, Runs, finish, has_no_namespaces, program, until_iteration};
+use crate::harness::{
+    Alone, Process, Runs, enclosed, finish, has_no_namespaces, program, until_iteration,
+};
 
 /// Runs `ampco train --preset smoke` with `arguments`, which must be refused before anything starts.
 fn refused(arguments: &[&str]) -> String {
@@ -60,6 +62,55 @@ fn a_policy_to_begin_with_has_to_be_there() {
         &refused(&["--from", shipped]),
         &["walk", "policy.hidden=[256, 128, 64]"],
     );
+}
+
+#[test]
+fn files_that_are_something_else_are_named_and_not_echoed() {
+    let runs = Runs::new();
+    let page = format!("<!DOCTYPE html><html>{}", "A\x1b[2J".repeat(400_000));
+    let path = |name: &str| runs.path().join(name).display().to_string();
+    for name in ["wrong.toml", "wrong.npz", "wrong.csv", "wrong.2.bvh"] {
+        fs::write(path(name), &page).expect("written");
+    }
+    let clip = format!("motion.clips=[{{file={:?}}}]", path("wrong.csv"));
+    let (toml, npz, bvh) = (path("wrong.toml"), path("wrong.npz"), path("wrong.2.bvh"));
+    let new = path("new");
+    let commands: [&[&str]; 8] = [
+        &["train", "--preset", &toml, "--runs-dir", &new],
+        &[
+            "train",
+            "--preset",
+            "smoke",
+            "--set",
+            &clip,
+            "--runs-dir",
+            &new,
+        ],
+        &["study", "run", &toml, "--out", &new],
+        &["stages", &toml],
+        &["motions", "import", &npz, "--out", &new],
+        &["motions", "import", &npz, &bvh, "--out", &new],
+        &["motions", "check", &npz],
+        &["play", &bvh, "--html", &new],
+    ];
+    for arguments in commands {
+        let mut command = Command::new(program("ampco"));
+        command.args(arguments);
+        let mut process = Process::start(command);
+        let status = process.end();
+        let said = process.stderr.text() + &process.stdout.text();
+        assert!(
+            matches!(status.code(), Some(1 | 2)),
+            "{arguments:?}: {status}"
+        );
+        assert_says(&said, &["wrong.", "a web page (HTML)"]);
+        assert!(said.len() < 2_000, "{arguments:?}: {} bytes", said.len());
+        assert!(!said.contains('\x1b'), "{said:?}");
+        assert!(
+            !runs.path().join("new").exists(),
+            "{arguments:?} left a folder behind"
+        );
+    }
 }
 
 #[test]
@@ -132,15 +183,13 @@ fn a_second_group_of_a_run_is_refused() {
 
 #[test]
 fn a_full_shared_memory_is_said_and_kills_nobody_by_a_bus_error() {
-    // A file system of one megabyte over /dev/shm, in a mount namespace of the test's own.
-    let runs = Runs::new();
-    let train = format!(
-        "mount -t tmpfs -o size=1m tmpfs /dev/shm && exec {} train --preset smoke --run full --runs-dir {}",
-        program("ampco").display(),
-        runs.path().display()
-    );
-    let mut command = Command::new("unshare");
-    command.args(["--user", "--map-root-user", "--mount", "sh", "-c", &train]);
+    // A file system of one megabyte over /dev/shm, in places of the test's own.
+    let place = Runs::new();
+    let train = r#"
+mount -t tmpfs -o size=1m tmpfs /dev/shm || exit 9
+exec "$AMPCO" train --preset smoke --run full --runs-dir /tmp
+"#;
+    let command = enclosed(place.path(), train);
     let mut process = Process::start(command);
     let status = process.end();
     let said = process.stderr.text();

@@ -1,19 +1,19 @@
 //! A disk that refuses: the writing stops and is missed, the training goes on.
 
 use std::fs;
-use std::os::unix::fs::{MetadataExt, PermissionsExt};
-use std::process::Command;
+use std::os::unix::fs::PermissionsExt;
 
 use rustix::process::Signal;
 
 use crate::harness::{
-    Process, Runs, has_no_namespaces, holder, metrics, program, repository, until, until_iteration,
+    Process, Runs, enclosed, has_no_namespaces, holder, metrics, until, until_iteration,
 };
 
 /// A file system of a few megabytes that is filled while a group trains, and emptied again. Its content
 /// vanishes with the namespace, so it is copied out at the end.
 const FULL: &str = r#"
-mount -t tmpfs -o size=8m tmpfs "$RUNS" || exit 9
+RUNS=/tmp/runs OUT=/tmp
+mkdir "$RUNS" && mount -t tmpfs -o size=8m tmpfs "$RUNS" || exit 9
 "$AMPCO" train --preset smoke --actors 1 --run full --runs-dir "$RUNS" --set run.iterations=0 \
     --set checkpoint_every=5 2> "$OUT/said" &
 train=$!
@@ -40,14 +40,8 @@ exit $status
 
 #[test]
 fn a_full_disk_stops_the_writing_and_not_the_training() {
-    let (runs, out) = (Runs::new(), Runs::new());
-    let mut command = Command::new("unshare");
-    command
-        .args(["--user", "--map-root-user", "--mount", "sh", "-c", FULL])
-        .env("RUNS", runs.path())
-        .env("OUT", out.path())
-        .env("AMPCO", program("ampco"));
-    let mut process = Process::start(command);
+    let out = Runs::new();
+    let mut process = Process::start(enclosed(out.path(), FULL));
     let status = process.end();
     let said = process.stderr.text();
     if has_no_namespaces(&said) {
@@ -70,40 +64,29 @@ fn a_full_disk_stops_the_writing_and_not_the_training() {
     assert_eq!(newest, numbers.last().copied(), "the end was saved");
 }
 
-/// `ampco train` without the right to override permissions, which root has.
-fn bound_by_permissions(runs: &Runs, name: &str) -> Process {
-    let me = fs::metadata(runs.path()).expect("a folder").uid();
-    let mut command = if me == 0 {
-        // A user namespace without a mapping takes that right away.
-        let mut command = Command::new("unshare");
-        command.arg("--user").arg(program("ampco"));
-        command
-    } else {
-        Command::new(program("ampco"))
-    };
-    command
-        .args(["train", "--preset", "smoke", "--actors", "1", "--run", name])
-        .arg("--runs-dir")
-        .arg(runs.path())
-        .args(["--set", "run.iterations=0", "--set", "checkpoint_every=5"])
-        .current_dir(repository());
-    Process::start(command)
-}
+/// `ampco train` without the right to override permissions, which root has: a user namespace in which nobody has a number
+/// takes that right away.
+const BOUND_BY_PERMISSIONS: &str = r#"
+exec unshare --user "$AMPCO" train --preset smoke --actors 1 --run still --runs-dir /tmp \
+    --set run.iterations=0 --set checkpoint_every=5
+"#;
 
 #[test]
 fn a_read_only_folder_stops_the_writing_and_not_the_training() {
     let runs = Runs::new();
     let run = runs.run("still");
-    let mut group = bound_by_permissions(&runs, "still");
+    let mut group = Process::start(enclosed(runs.path(), BOUND_BY_PERMISSIONS));
     until("a first iteration or a refusal", || {
         let said = group.stderr.text();
-        (!said.is_empty() && said.contains("unshare:")
-            || run.join("metrics.jsonl").exists() && !metrics(&run).is_empty())
-        .then_some(())
+        let refused = said.contains("unshare:") || said.contains("mount:");
+        let begun = run.join("metrics.jsonl").exists() && !metrics(&run).is_empty();
+        (refused || begun).then_some(())
     });
     if has_no_namespaces(&group.stderr.text()) {
         return;
     }
+    // Sockets of a user without a number are in this test's folder and nobody else's.
+    assert!(runs.path().join("ampco-65534").is_dir());
     let folders = [run.join("checkpoints"), run.clone()];
     let permit = |mode| {
         for folder in &folders {

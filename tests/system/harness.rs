@@ -6,6 +6,7 @@ use std::io::Read;
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -13,11 +14,15 @@ use rustix::process::{Pid, Signal, kill_process, kill_process_group};
 use serde_json::Value;
 use tempfile::TempDir;
 
+mod enclosed;
+mod wait;
+
+pub(crate) use enclosed::{enclosed, has_no_namespaces};
+pub(crate) use wait::until;
+use wait::{GLANCE, until_within};
+
 /// Longest that anything here may take on a busy machine.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(90);
-
-/// How often a condition is looked at again.
-const GLANCE: Duration = Duration::from_millis(10);
 
 /// A folder of runs that vanishes with the test.
 pub(crate) struct Runs(TempDir);
@@ -148,14 +153,11 @@ pub(crate) struct Process {
 }
 
 /// Everything a stream said so far, read by a thread of its own.
-pub(crate) struct Captured(
-    std::sync::Arc<std::sync::Mutex<Vec<u8>>>,
-    Option<thread::JoinHandle<()>>,
-);
+pub(crate) struct Captured(Arc<Mutex<Vec<u8>>>, Option<thread::JoinHandle<()>>);
 
 impl Captured {
     fn read(mut from: impl Read + Send + 'static) -> Self {
-        let text = std::sync::Arc::new(std::sync::Mutex::new(Vec::new()));
+        let text = Arc::new(Mutex::new(Vec::new()));
         let into = text.clone();
         let reader = thread::spawn(move || {
             let mut chunk = [0; 4096];
@@ -166,6 +168,11 @@ impl Captured {
             }
         });
         Self(text, Some(reader))
+    }
+
+    /// The same stream for another who reads it.
+    fn again(&self) -> Self {
+        Self(self.0.clone(), None)
     }
 
     pub(crate) fn text(&self) -> String {
@@ -190,6 +197,7 @@ impl Process {
             .unwrap_or_else(|error| panic!("{command:?}: {error}"));
         let stdout = Captured::read(child.stdout.take().expect("piped"));
         let stderr = Captured::read(child.stderr.take().expect("piped"));
+        wait::started(Pid::from_child(&child), stderr.again());
         Self {
             child,
             stdout,
@@ -213,6 +221,7 @@ impl Process {
 
     /// Waits for the end of what takes longer.
     pub(crate) fn end_within(&mut self, patience: Duration) -> ExitStatus {
+        wait::awaited_end(self.pid());
         let status = until_within(patience, "the end of a process", || {
             self.child.try_wait().expect("a child can be waited for")
         });
@@ -224,6 +233,7 @@ impl Process {
 
 impl Drop for Process {
     fn drop(&mut self) {
+        wait::awaited_end(self.pid());
         if matches!(self.child.try_wait(), Ok(None)) {
             let _ = kill_process_group(self.pid(), Signal::KILL);
             let _ = self.child.kill();
@@ -241,25 +251,6 @@ pub(crate) fn finish(command: Command) -> (bool, String, String) {
         process.stdout.text(),
         process.stderr.text(),
     )
-}
-
-/// Looks again and again until there is an answer; panics, naming what was awaited, if none comes.
-pub(crate) fn until<T>(awaited: &str, look: impl FnMut() -> Option<T>) -> T {
-    until_within(PATIENCE, awaited, look)
-}
-
-fn until_within<T>(patience: Duration, awaited: &str, mut look: impl FnMut() -> Option<T>) -> T {
-    let started = Instant::now();
-    loop {
-        if let Some(answer) = look() {
-            return answer;
-        }
-        assert!(
-            started.elapsed() < patience,
-            "waited {patience:?} in vain for {awaited}"
-        );
-        thread::park_timeout(GLANCE);
-    }
 }
 
 /// All metrics of a run so far.
@@ -310,17 +301,6 @@ pub(crate) fn own_memory(pid: Pid) -> u64 {
 pub(crate) fn length(variable: &str, short: f64) -> f64 {
     let given = std::env::var(variable).ok();
     given.map_or(short, |given| given.parse().expect("a number"))
-}
-
-/// Whether a sandbox of the kernel was refused: a test that needs one can then not be held.
-pub(crate) fn has_no_namespaces(said: &str) -> bool {
-    let refused = said.contains("unshare:") || said.contains("mount:");
-    // The message says which.
-    assert!(
-        !refused || said.contains("ermitted") || said.contains("denied"),
-        "{said}"
-    );
-    refused
 }
 
 /// The bytes of a file, or a panic that names it.
