@@ -1,4 +1,4 @@
-//! Every command that the README and the help texts show can be typed: it parses, its keys and presets exist, and so do the
+//! Every command that a README or a help text shows can be typed: it parses, its keys and presets exist, and so do the
 //! files of the repository that it names.
 
 use std::path::{Path, PathBuf};
@@ -15,9 +15,45 @@ fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-fn readme() -> String {
-    std::fs::read_to_string(repository().join("README.md")).unwrap()
+/// Every README of the repository: its folder, its name for messages, its text.
+fn readmes() -> Vec<(PathBuf, String, String)> {
+    fn search(folder: &Path, found: &mut Vec<PathBuf>) {
+        for entry in std::fs::read_dir(folder).unwrap().flatten() {
+            let (path, name) = (entry.path(), entry.file_name());
+            if name == "README.md" {
+                found.push(path);
+            } else if path.is_dir() && name != "target" && !name.to_string_lossy().starts_with('.')
+            {
+                search(&path, found);
+            }
+        }
+    }
+    // What is ours: a checkout may hold runs and data of its user.
+    let mut found = vec![repository().join("README.md")];
+    for folder in FOLDERS {
+        search(&repository().join(folder), &mut found);
+    }
+    let of = |path: PathBuf| {
+        let name = path
+            .strip_prefix(repository())
+            .unwrap()
+            .display()
+            .to_string();
+        let text = std::fs::read_to_string(&path).unwrap();
+        (path.parent().unwrap().to_owned(), name, text)
+    };
+    found.into_iter().map(of).collect()
 }
+
+/// The folders of the repository.
+const FOLDERS: [&str; 6] = [
+    "deploy",
+    "tests",
+    "learner",
+    "actor",
+    "protocol",
+    "scheduler",
+];
 
 /// What is wrong with the arguments of a command. One within a sentence may leave out what the sentence is not about.
 fn complaint(arguments: &[String], typed: bool) -> Option<String> {
@@ -52,7 +88,7 @@ fn complaint(arguments: &[String], typed: bool) -> Option<String> {
         Err(error) => return Some(format!("{error:#}")),
     };
     for pair in arguments.windows(2).filter(|pair| pair[0] == "--set") {
-        let (key, value) = pair[1].split_once('=').unwrap_or_default();
+        let (key, value) = pair[1].split_once('=').unwrap_or((&pair[1], ""));
         if is_placeholder(value) || is_placeholder(key) || key == "key" {
             continue;
         }
@@ -83,39 +119,36 @@ fn is_placeholder(word: &str) -> bool {
 /// A path of the repository that a word names, without the signs around it.
 fn path(word: &str) -> Option<&str> {
     let path = word.split(['=', ':']).next_back()?;
-    let known = [
-        "deploy/",
-        "tests/",
-        "learner/",
-        "actor/",
-        "protocol/",
-        "scheduler/",
-    ];
     let plain = |c: char| c.is_ascii_alphanumeric() || "/._-".contains(c);
-    (known.iter().any(|folder| path.starts_with(folder)) && path.chars().all(plain)).then_some(path)
+    let (first, rest) = path.split_once('/')?;
+    (FOLDERS.contains(&first) && !rest.is_empty() && path.chars().all(plain)).then_some(path)
 }
 
 #[test]
-fn every_command_of_the_readme_can_be_typed() {
+fn every_command_of_a_readme_can_be_typed() {
     let mut wrong = Vec::new();
     let mut parsed = 0;
-    for command in shell::commands(&readme()) {
-        let line = command.line;
-        let shown = command.words.join(" ");
-        for path in command.words.iter().filter_map(|word| path(word)) {
-            if !repository().join(path).exists() {
-                wrong.push(format!("line {line}, {shown}: there is no {path}"));
+    for (_, readme, text) in readmes() {
+        for command in shell::commands(&text) {
+            let shown = format!(
+                "{readme} line {}, {}",
+                command.line,
+                command.words.join(" ")
+            );
+            for path in command.words.iter().filter_map(|word| path(word)) {
+                if !repository().join(path).exists() {
+                    wrong.push(format!("{shown}: there is no {path}"));
+                }
             }
-        }
-        let is_word = command.words.len() == 1;
-        let Some(arguments) =
-            shell::arguments(&command.words).filter(|_| command.typed || !is_word)
-        else {
-            continue;
-        };
-        parsed += 1;
-        if let Some(words) = complaint(&arguments, command.typed) {
-            wrong.push(format!("line {line}, {shown}: {words}"));
+            let is_word = command.words.len() == 1;
+            let arguments = shell::arguments(&command.words);
+            let Some(arguments) = arguments.filter(|_| command.typed || !is_word) else {
+                continue;
+            };
+            parsed += 1;
+            if let Some(words) = complaint(&arguments, command.typed) {
+                wrong.push(format!("{shown}: {words}"));
+            }
         }
     }
     assert!(parsed >= 20, "only {parsed} commands were found");
@@ -123,36 +156,37 @@ fn every_command_of_the_readme_can_be_typed() {
 }
 
 #[test]
-fn every_link_of_the_readme_leads_somewhere() {
-    let text = readme();
+fn every_link_of_a_readme_leads_somewhere() {
     let mut links = 0;
-    for rest in text.split("](").skip(1) {
-        let link = rest.split(')').next().unwrap_or_default();
-        if link.contains("://") || link.starts_with('#') {
-            continue;
+    for (folder, readme, text) in readmes() {
+        for rest in text.split("](").skip(1) {
+            let link = rest.split(')').next().unwrap_or_default();
+            let path = link.split('#').next().unwrap_or_default();
+            if link.contains("://") || path.is_empty() {
+                continue;
+            }
+            links += 1;
+            assert!(folder.join(path).exists(), "{readme}: there is no {path}");
         }
-        links += 1;
-        let path = link.split('#').next().unwrap_or_default();
-        assert!(repository().join(path).exists(), "there is no {path}");
     }
     assert!(links > 0);
 }
 
 #[test]
-fn scripts_of_the_readme_know_the_options_that_it_gives_them() {
-    for command in shell::commands(&readme()) {
-        let Some((program, arguments)) = command.words.split_first() else {
-            continue;
-        };
-        if !(program.starts_with("deploy/") && program.ends_with(".py")) {
-            continue;
-        }
-        let text = std::fs::read_to_string(repository().join(program)).unwrap();
-        for option in arguments.iter().filter(|word| word.starts_with("--")) {
-            assert!(
-                text.contains(&format!("\"{option}\"")),
-                "{program} does not know {option}"
-            );
+fn scripts_know_the_options_that_a_readme_gives_them() {
+    for (_, readme, text) in readmes() {
+        for command in shell::commands(&text) {
+            let Some((program, arguments)) = command.words.split_first() else {
+                continue;
+            };
+            if !(program.starts_with("deploy/") && program.ends_with(".py")) {
+                continue;
+            }
+            let script = std::fs::read_to_string(repository().join(program)).unwrap();
+            for option in arguments.iter().filter(|word| word.starts_with("--")) {
+                let known = script.contains(&format!("\"{option}\""));
+                assert!(known, "{readme}: {program} does not know {option}");
+            }
         }
     }
 }

@@ -149,7 +149,10 @@ pub fn import(path: &Path, options: &Options) -> Result<Imported, MotionError> {
         path,
         bytes: &bytes,
     };
-    imported(&file, options, decisions).map_err(|error| file.foreign().unwrap_or(error))
+    imported(&file, options, decisions).map_err(|error| {
+        let misnamed = || options.format.is_none().then(|| format::misnamed(&file))?;
+        file.foreign().or_else(misnamed).unwrap_or(error)
+    })
 }
 
 fn imported(

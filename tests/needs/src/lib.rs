@@ -1,4 +1,5 @@
-//! What some tests need of the machine beside a Rust toolchain: a browser, a Python with certain packages.
+//! What some tests need of the machine beside a Rust toolchain: a browser, a Python with certain packages,
+//! namespaces of the kernel.
 //!
 //! Separate because the rule is one for all of them. A test that lacks something returns early, and the absence is
 //! written to the file that `AMPCO_SKIPPED` names, a line each, which `deploy/check.sh` counts at its end. With
@@ -53,7 +54,10 @@ fn on_path(path: &OsStr) -> Option<PathBuf> {
 }
 
 /// Says that the running test is skipped, and why.
-fn absent(reason: &str) {
+///
+/// # Panics
+/// Where everything has to run.
+pub fn absent(reason: &str) {
     let thread = std::thread::current();
     let test = thread.name().unwrap_or("a test");
     assert!(

@@ -40,5 +40,8 @@ pub(crate) fn has_no_namespaces(said: &str) -> bool {
         !refused || said.contains("ermitted") || said.contains("denied"),
         "{said}"
     );
+    if refused {
+        needs::absent(&format!("no namespaces of one's own: {}", said.trim()));
+    }
     refused
 }

@@ -77,6 +77,36 @@ fn so_it_is_of_the_skeleton_beside_a_motion() {
 }
 
 #[test]
+fn a_name_that_promises_another_format_is_the_reason() {
+    for (name, ending) in [
+        ("a.npz", "npz"),
+        ("a.NPY", "npy"),
+        ("a.pkl", "pkl"),
+        ("a.bvh", "bvh"),
+        ("b.amc", "amc"),
+    ] {
+        let said = refused(name, b"Access denied\nretry later", None);
+        let reason =
+            format!("/{name}: is no .{ending} file: it begins with \"Access denied…\"; download");
+        assert!(said.starts_with(&reason), "{said}");
+    }
+    let table = refused("a.csv", b"Access denied\nretry later", None);
+    assert!(
+        table.contains("unknown column \"Access denied\""),
+        "{table}"
+    );
+    // A table under a wrong name is read all the same.
+    let sound = crate::export::to_csv(&crate::gait::walk(1.0).unwrap(), &[]);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.bvh");
+    std::fs::write(&path, sound).unwrap();
+    assert_eq!(
+        import(&path, &Options::default()).unwrap().format,
+        Format::Csv
+    );
+}
+
+#[test]
 fn no_more_than_a_line_of_a_wrong_file_is_shown() {
     let long = "A".repeat(1_800_000);
     let pickle = [b"\x80\x04c", long.as_bytes(), b"\nB\n)R."].concat();

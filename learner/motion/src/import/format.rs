@@ -197,6 +197,24 @@ fn detect_pickle(file: &File<'_>) -> Result<(Format, String), MotionError> {
     ))
 }
 
+/// That a file whose name promises one format begins like none of them, if so: a better reason than what is wrong with it as
+/// the table that it was then taken for.
+pub(super) fn misnamed(file: &File<'_>) -> Option<MotionError> {
+    let ending = file.path.extension()?.to_string_lossy().to_lowercase();
+    let promised = ["npz", "npy", "pkl", "bvh", "amc", "motion", "pt"].contains(&ending.as_str());
+    let taken_for_a_table = matches!(detect(file), Ok((Format::Csv, _)));
+    (promised && taken_for_a_table).then(|| {
+        let head = String::from_utf8_lossy(&file.bytes[..file.bytes.len().min(4096)]);
+        file.unusable(
+            &format!(
+                "is no .{ending} file: it begins with {}",
+                wording::quoted(head.trim_start())
+            ),
+            "download or export it again, or give it the name of what it is",
+        )
+    })
+}
+
 fn detect_npz(file: &File<'_>) -> Result<(Format, String), MotionError> {
     if let Some(pickle) = torch::read(file)? {
         if proto::is(&pickle) {
