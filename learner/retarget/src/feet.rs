@@ -3,32 +3,47 @@
 //! Separate because it is what retargeting by directions alone gets wrong. In stance a foot is a
 //! rigid plate that rolls over its heel edge or its toe edge without slipping; its place is the one
 //! that changes the directions' own path least. Between stances the correction goes from the one to
-//! the next without a step in speed, and the sole is lifted where it would scuff. The pelvis is
-//! carried so high that standing feet reach the ground, and no higher than the legs reach.
+//! the next without a step in speed, and the sole is lifted where it would scuff.
 
 use crate::capture::Side;
 use crate::contact::{Contact, stances};
-use crate::signal;
-use g1::links::{SOLE_CORNERS, SOLE_DEPTH};
+use crate::{pelvis, signal, sole};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use std::f64::consts::PI;
 
-/// The frames that directions alone lead to: where feet and hips are.
+/// What directions alone lead to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Free {
     /// The feet in the world, by [`Side::index`].
     pub feet: [Isometry3<f64>; 2],
     /// The hip roll joints in the world, m.
     pub hips: [Vector3<f64>; 2],
+    /// The ankle pitch joints in the world, m.
+    pub ankles: [Vector3<f64>; 2],
+}
+
+/// Where a foot shall be in a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foothold {
+    /// Its frame in the world.
+    pub frame: Isometry3<f64>,
+    /// How firmly it is to be there: 1 in stance, less and less in swing, down to 0.
+    pub firm: f64,
+    /// The point of it that has its place, in its own frame, m: the edge over which it rolls, or its ankle.
+    pub pivot: Vector3<f64>,
+    /// How far it stands on an edge alone, 0 to 1: its pitch is then its own.
+    pub tipped: f64,
+    /// Height that its sole is to have at least, m.
+    pub clearance: f64,
 }
 
 /// What the second pass is to do.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// How much the pelvis is raised in each frame, m.
-    pub raise: Vec<f64>,
-    /// Where the feet are in each frame.
-    pub feet: Vec<[Isometry3<f64>; 2]>,
+    /// How much the pelvis is moved in each frame, m.
+    pub shift: Vec<Vector3<f64>>,
+    /// Where the feet shall be in each frame.
+    pub feet: Vec<[Foothold; 2]>,
     /// Stances that were locked.
     pub stances: usize,
     /// Farthest that locking moved a foot over the ground, m.
@@ -37,154 +52,141 @@ pub struct Plan {
     pub lowered: f64,
 }
 
+/// A foot's frame on the ground; `None` where it does not stand.
+pub(crate) type Soles = Vec<Option<Isometry3<f64>>>;
+
 /// Height of the sole in the middle of swing, at least, m.
 const CLEARANCE: f64 = 0.015;
-/// Hip roll joint to ankle pitch joint of a nearly straight leg, m, and ankle pitch above ankle roll.
-const REACH: f64 = 0.6075;
-const ANKLE: f64 = 0.0176;
-/// Gaussian over the pelvis' height correction, frames.
-const RAISE_SMOOTHING: f64 = 3.0;
 /// A correction with a slope needs a gap of at most this many frames: longer ones would swing out.
 const SLOPED_GAP: usize = 30;
+/// Frames after and before a stance in which a swinging foot is not yet, or no longer, free of its place.
+const RELEASE: (f64, f64) = (3.0, 6.0);
 
 /// Plans the feet of a clip.
 pub fn plan(free: &[Free], contacts: &[Contact]) -> Plan {
     let standing = Side::BOTH.map(|side| stances(contacts, side));
-    let soles = Side::BOTH.map(|side| standing_soles(free, side, &standing[side.index()]));
-    let mut raise = raised(free, &soles);
-    let mut plan = Plan {
-        raise: Vec::new(),
-        feet: vec![[Isometry3::identity(); 2]; free.len()],
+    let soles = Side::BOTH.map(|side| planted(free, side, &standing[side.index()]));
+    let carried = pelvis::carry(free, &soles);
+    let paths = Side::BOTH.map(|side| path(free, side, &carried.shift, &soles[side.index()]));
+    let moved = (0..2).flat_map(|s| {
+        let gap = move |(sole, free): (&Option<Isometry3<f64>>, &Free)| {
+            let place = free.feet[s].translation.vector;
+            sole.map_or(0.0, |sole| (sole.translation.vector - place).xy().norm())
+        };
+        soles[s].iter().zip(free).map(gap)
+    });
+    Plan {
+        feet: (0..free.len())
+            .map(|i| [paths[0][i], paths[1][i]])
+            .collect(),
         stances: standing.iter().map(Vec::len).sum(),
-        moved: 0.0,
-        lowered: 0.0,
-    };
-    for side in Side::BOTH {
-        let s = side.index();
-        let (path, moved) = foot_path(free, side, &raise, &standing[s], &soles[s]);
-        plan.moved = plan.moved.max(moved);
-        for (feet, foot) in plan.feet.iter_mut().zip(path) {
-            feet[s] = foot;
-        }
+        moved: moved.fold(0.0, f64::max),
+        lowered: carried.lowered,
+        shift: carried.shift,
     }
-    let excess: Vec<f64> = (0..free.len())
-        .map(|i| {
-            let too_far = |s: usize| beyond_reach(&free[i].hips[s], raise[i], &plan.feet[i][s]);
-            too_far(0).max(too_far(1))
-        })
-        .collect();
-    for (raise, lower) in raise.iter_mut().zip(signal::envelope(&excess, 3)) {
-        *raise -= lower;
-        plan.lowered = plan.lowered.max(lower);
-    }
-    plan.raise = raise;
-    plan
 }
 
-/// Orientation of a standing foot (level across, yaw held) and the way of its ankle relative to the
-/// first frame of the stance; `None` where it does not stand.
-fn standing_soles(
-    free: &[Free],
-    side: Side,
-    stances: &[(usize, usize)],
-) -> Vec<Option<Isometry3<f64>>> {
+/// Where a foot stands: it rolls over its edges in the place that moves its own path least.
+fn planted(free: &[Free], side: Side, stances: &[(usize, usize)]) -> Soles {
+    let s = side.index();
     let mut soles = vec![None; free.len()];
     for &(first, end) in stances {
         let toes: Vec<Vector3<f64>> = free[first..end]
             .iter()
-            .map(|f| f.feet[side.index()].rotation * Vector3::x())
+            .map(|f| f.feet[s].rotation * Vector3::x())
             .collect();
-        let ahead: Vector3<f64> = toes.iter().sum();
-        let yaw = ahead.y.atan2(ahead.x);
-        let turn = |toe: &Vector3<f64>| {
-            let forward = toe.x * yaw.cos() + toe.y * yaw.sin();
-            UnitQuaternion::from_euler_angles(0.0, (-toe.z).atan2(forward), yaw)
-        };
-        let mut way = Vector3::zeros();
-        let mut before: Option<UnitQuaternion<f64>> = None;
-        for (i, toe) in toes.iter().enumerate() {
-            let now = turn(toe);
-            if let Some(before) = before {
-                let edge = edge(pitch(&before) + pitch(&now));
-                way += before * edge - now * edge;
-            }
-            let height = -lowest(&now);
-            let ankle = Vector3::new(way.x, way.y, height);
-            soles[first + i] = Some(Isometry3::from_parts(ankle.into(), now));
-            before = Some(now);
+        let rolling = sole::rolling(&toes);
+        let mut anchor: Vector3<f64> = rolling
+            .iter()
+            .zip(&free[first..end])
+            .map(|(sole, free)| free.feet[s].translation.vector - sole.translation.vector)
+            .sum::<Vector3<f64>>()
+            / (end - first) as f64;
+        anchor.z = 0.0; // the ground
+        for (sole, mut foot) in soles[first..end].iter_mut().zip(rolling) {
+            foot.translation.vector += anchor;
+            *sole = Some(foot);
         }
     }
     soles
 }
 
-/// The middle of the sole's edge over which a foot of this pitch (toe down positive) rolls.
-fn edge(pitch: f64) -> Vector3<f64> {
-    let corner = SOLE_CORNERS[if pitch > 0.0 { 2 } else { 0 }];
-    Vector3::new(corner[0], 0.0, -SOLE_DEPTH)
-}
-
-fn pitch(turn: &UnitQuaternion<f64>) -> f64 {
-    -(turn * Vector3::x()).z
-}
-
-/// Height of the lowest corner of the sole above the ankle, m (negative).
-fn lowest(turn: &UnitQuaternion<f64>) -> f64 {
-    SOLE_CORNERS
+/// What the frames of a foot's path say of how it is held.
+fn held(path: &[Isometry3<f64>], soles: &Soles) -> Vec<Foothold> {
+    let mut feet: Vec<Foothold> = path
         .iter()
-        .map(|&corner| (turn * Vector3::from(corner)).z)
-        .fold(f64::INFINITY, f64::min)
-}
-
-/// How much the pelvis must rise so that the standing foot which asks for less reaches the ground.
-fn raised(free: &[Free], soles: &[Vec<Option<Isometry3<f64>>>; 2]) -> Vec<f64> {
-    let asked: Vec<Option<f64>> = (0..free.len())
-        .map(|i| {
-            let need = |s: usize| {
-                soles[s][i].map(|sole| sole.translation.z - free[i].feet[s].translation.z)
-            };
-            [need(0), need(1)].into_iter().flatten().reduce(f64::min)
+        .zip(soles)
+        .map(|(&frame, sole)| Foothold {
+            frame,
+            firm: if sole.is_some() { 1.0 } else { 0.0 },
+            pivot: sole.map_or_else(Vector3::zeros, |sole| sole::pivot(&sole.rotation)),
+            tipped: sole.map_or(0.0, |sole| sole::tipped(&sole.rotation)),
+            clearance: 0.0,
         })
         .collect();
-    let mut lows: Vec<f64> = free
-        .iter()
-        .flat_map(|f| f.feet)
-        .map(|foot| -(foot.translation.z + lowest(&foot.rotation)))
-        .collect();
-    // A clip in which no foot ever stands: the lowest twentieth touches the ground.
-    let otherwise = signal::quantile(&mut lows, 0.95);
-    signal::gaussian(&signal::filled(&asked, otherwise), RAISE_SMOOTHING)
+    for (first, end) in swings(soles) {
+        // What the stance beside it has fades on both sides.
+        let (before, after) = (
+            first.checked_sub(1),
+            Some(end).filter(|&end| end < path.len()),
+        );
+        for i in first..end {
+            let fade = |from: usize, within: f64| (1.0 - i.abs_diff(from) as f64 / within, from);
+            let ends = [
+                before.map(|b| fade(b, RELEASE.0)),
+                after.map(|a| fade(a, RELEASE.1)),
+            ];
+            let nearest = ends
+                .into_iter()
+                .flatten()
+                .max_by(|a, b| a.0.total_cmp(&b.0));
+            if let Some((firm, from)) = nearest.filter(|(firm, _)| *firm > 0.0) {
+                let stance = feet[from];
+                feet[i].firm = firm;
+                feet[i].pivot = stance.pivot * firm;
+                feet[i].tipped = stance.tipped;
+            }
+            feet[i].clearance = CLEARANCE * arch(i - first, end - first);
+        }
+    }
+    feet
 }
 
-/// The path of a foot, and how far locking moved it at most.
-fn foot_path(
-    free: &[Free],
-    side: Side,
-    raise: &[f64],
-    stances: &[(usize, usize)],
-    soles: &[Option<Isometry3<f64>>],
-) -> (Vec<Isometry3<f64>>, f64) {
-    let place =
-        |i: usize| free[i].feet[side.index()].translation.vector + Vector3::new(0.0, 0.0, raise[i]);
+/// The runs of frames in which a foot does not stand: first frame, and one past the last.
+fn swings(soles: &Soles) -> Vec<(usize, usize)> {
+    let mut runs = Vec::new();
+    let mut first = 0;
+    while first < soles.len() {
+        let length = soles[first..].iter().take_while(|s| s.is_none()).count();
+        if length > 0 {
+            runs.push((first, first + length));
+        }
+        first += length.max(1);
+    }
+    runs
+}
+
+/// From 0 at both ends of a swing to 1 in its middle.
+fn arch(i: usize, length: usize) -> f64 {
+    (PI * (i + 1) as f64 / (length + 1) as f64).sin().powi(2)
+}
+
+/// The path of a foot: on its soles, and between them where the pelvis carries it, corrected from the
+/// one to the next.
+fn path(free: &[Free], side: Side, shift: &[Vector3<f64>], soles: &Soles) -> Vec<Foothold> {
+    let place = |i: usize| free[i].feet[side.index()].translation.vector + shift[i];
     let turn = |i: usize| free[i].feet[side.index()].rotation;
     // Six series: the correction of place, then of orientation as a rotation vector.
     let mut correction: [Vec<Option<f64>>; 6] = std::array::from_fn(|_| vec![None; free.len()]);
-    let mut moved: f64 = 0.0;
-    for &(first, end) in stances {
-        let sole = |i: usize| soles[i].expect("a stance has soles");
-        let mut anchor: Vector3<f64> = (first..end)
-            .map(|i| place(i) - sole(i).translation.vector)
-            .sum::<Vector3<f64>>()
-            / (end - first) as f64;
-        anchor.z = 0.0; // the ground
-        (first..end).for_each(|i| {
-            let shift = anchor + sole(i).translation.vector - place(i);
-            let twist = (sole(i).rotation * turn(i).inverse()).scaled_axis();
-            moved = moved.max(shift.xy().norm());
+    for (i, sole) in soles.iter().enumerate() {
+        if let Some(sole) = sole {
+            let gap = sole.translation.vector - place(i);
+            let twist = (sole.rotation * turn(i).inverse()).scaled_axis();
             for axis in 0..3 {
-                correction[axis][i] = Some(shift[axis]);
+                correction[axis][i] = Some(gap[axis]);
                 correction[axis + 3][i] = Some(twist[axis]);
             }
-        });
+        }
     }
     let correction = correction.map(|series| bridged(&series));
     let vector = |i: usize, from: usize| Vector3::from_fn(|axis, _| correction[from + axis][i]);
@@ -195,32 +197,21 @@ fn foot_path(
         })
         .collect();
     lift_swings(&mut path, soles);
-    (path, moved)
+    held(&path, soles)
 }
 
 /// Lifts what would scuff between stances, most in the middle.
-fn lift_swings(path: &mut [Isometry3<f64>], soles: &[Option<Isometry3<f64>>]) {
-    let mut first = 0;
-    while first < path.len() {
-        let length = soles[first..].iter().take_while(|s| s.is_none()).count();
-        for (i, foot) in path[first..first + length].iter_mut().enumerate() {
-            let arch = (PI * (i + 1) as f64 / (length + 1) as f64).sin().powi(2);
-            let low = foot.translation.z + lowest(&foot.rotation);
+fn lift_swings(path: &mut [Isometry3<f64>], soles: &Soles) {
+    for (first, end) in swings(soles) {
+        for (i, foot) in path[first..end].iter_mut().enumerate() {
+            let low = foot.translation.z + sole::lowest(&foot.rotation);
+            let arch = arch(i, end - first);
             let (needed, width) = (CLEARANCE * arch, 0.01 * arch);
             // The larger of both, rounded where they cross.
             let high = 0.5 * (low + needed + ((low - needed).powi(2) + width * width).sqrt());
             foot.translation.z += high - low;
         }
-        first += length.max(1);
     }
-}
-
-/// How much lower the hip must be for the ankle to be within reach, m.
-fn beyond_reach(hip: &Vector3<f64>, raise: f64, foot: &Isometry3<f64>) -> f64 {
-    let ankle = foot.translation.vector + foot.rotation * Vector3::new(0.0, 0.0, ANKLE);
-    let away = (hip - ankle).xy().norm();
-    let reach = (REACH * REACH - away * away).max(0.0).sqrt();
-    (hip.z + raise - ankle.z - reach).max(0.0)
 }
 
 /// Gaps filled by cubics that continue the slopes on both sides; ends held.

@@ -37,6 +37,20 @@ pub struct BoneOff {
     pub by: f64,
 }
 
+/// Where a joint's speed changes most from one frame to the next.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sharpest {
+    /// The joint's name.
+    pub joint: String,
+    /// Frame of the clip (the middle one of three), counted from 1.
+    pub frame: usize,
+    /// Second difference there, degrees a frame²; 8 are 349 rad/s².
+    pub degrees: f64,
+}
+
+/// Second difference of a leg's joint above which it snaps, degrees a frame².
+pub const SNAP: f64 = 8.0;
+
 /// The account of a retargeted clip.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
@@ -57,12 +71,24 @@ pub struct Report {
     /// Bones that are off in any frame, by more than [`BONE_OFF`].
     #[serde(default)]
     pub bones_off: Vec<BoneOff>,
+    /// Share of bones and frames that are more than 20° off.
+    #[serde(default)]
+    pub off_target: f64,
+    /// Flexion of the robot's knees less that of the human's: root of the mean square, degrees.
+    #[serde(default)]
+    pub knee_error: f64,
+    /// Greatest second difference of each joint of the legs, in the robot's order.
+    #[serde(default)]
+    pub sharpest: Vec<Sharpest>,
     /// Stances in which a foot was locked.
     pub stances: usize,
     /// Farthest that locking moved a foot over the ground, m.
     pub feet_moved: f64,
     /// Most that the pelvis was lowered because a leg did not reach, m.
     pub lowered: f64,
+    /// Farthest that the pelvis was moved over the ground so that knees bend as the human's, m.
+    #[serde(default)]
+    pub carried: f64,
     /// Most that the robot was lifted at the end because a sole was below the ground, m.
     pub lifted: f64,
     /// Joints that stopped at a limit of position.
@@ -72,7 +98,8 @@ pub struct Report {
 }
 
 impl Report {
-    /// What was done about each defect that directions alone would have had, a sentence each.
+    /// What was done about each defect that directions alone would have had, and what is left of it, a
+    /// sentence each.
     pub fn actions(&self) -> Vec<String> {
         let mut actions = vec![
             format!(
@@ -90,6 +117,12 @@ impl Report {
         if self.lowered > 5e-4 {
             let most = 100.0 * self.lowered;
             actions.push(format!("reach: lowered the pelvis by at most {most:.1} cm"));
+        }
+        if self.carried > 5e-4 {
+            let most = 100.0 * self.carried;
+            actions.push(format!(
+                "knees: moved the pelvis by at most {most:.1} cm over the ground"
+            ));
         }
         if self.lifted > 5e-4 {
             let most = 100.0 * self.lifted;
@@ -111,6 +144,18 @@ impl Report {
                 .map(|held| format!("{} in {} frames", held.joint, held.frames))
                 .collect();
             actions.push(format!("{what} {}", joints.join(", ")));
+        }
+        for Sharpest {
+            joint,
+            frame,
+            degrees,
+        } in &self.sharpest
+        {
+            if *degrees > SNAP {
+                actions.push(format!(
+                    "left sharp: the speed of {joint} by {degrees:.1}° at frame {frame} (a frame, in a frame)"
+                ));
+            }
         }
         actions
     }
@@ -190,20 +235,37 @@ mod tests {
             direction_error: 2.0,
             direction_error_95: 6.0,
             bones_off: Vec::new(),
+            off_target: 0.031,
+            knee_error: 2.0,
+            sharpest: vec![
+                Sharpest {
+                    joint: "left_hip_pitch_joint".into(),
+                    frame: 12,
+                    degrees: 7.9,
+                },
+                Sharpest {
+                    joint: "left_knee_joint".into(),
+                    frame: 17,
+                    degrees: 9.04,
+                },
+            ],
             stances: 5,
             feet_moved: 0.021,
             lowered: 0.0,
+            carried: 0.004,
             lifted: 0.002,
             at_limit: held(&counts),
             at_speed: Vec::new(),
         };
         let actions = report.actions();
-        assert_eq!(actions.len(), 4, "{actions:?}");
+        assert_eq!(actions.len(), 6, "{actions:?}");
         assert!(actions[0].contains("0.840 m to 0.630 m"));
         assert!(actions[1].contains("5 stances") && actions[1].contains("2.1 cm"));
         assert_eq!(
-            actions[3],
+            actions[4],
             "limits: stopped left_ankle_roll_joint in 9 frames, left_ankle_pitch_joint in 7 frames"
         );
+        assert!(actions[2].contains("0.4 cm over the ground"), "{actions:?}");
+        assert!(actions[5].contains("left_knee_joint by 9.0° at frame 17"));
     }
 }

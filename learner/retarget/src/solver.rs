@@ -1,96 +1,193 @@
-//! Joints for targets: damped least squares within joint limits and joint-speed limits.
+//! Joints for targets, frame by frame: damped least squares within joint limits.
 //!
-//! Separate because it is the one solver here. The limbs hang on the pelvis and the torso one by one,
-//! so each is a small system of its own: (Σ w JᵀJ + λI) Δq = Σ w Jᵀe, solved again with a joint held
-//! at its bound whenever the step would leave it.
+//! Separate because it finds where a limb's path runs, from nothing but directions; [`crate::path`] then
+//! smooths it. A step that makes things worse is not taken, and a limb that ends far off is tried
+//! once more from the default pose: least squares on angles have wrong minima.
 
-use crate::RATE;
+use crate::feet::Foothold;
+use crate::limb::{ARMS, BONES, Chain, LEGS, Normal, Pose};
 use crate::targets::Target;
-use g1::joints::{LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG, WAIST};
-use g1::kinematics::forward;
-use g1::{BODIES, DEFAULT_POSE, JOINT_TABLE, JOINTS};
-use nalgebra::{Isometry3, SMatrix, SVector, Vector3};
+use g1::BODIES;
+use g1::links::SOLE_CORNERS;
+use nalgebra::{Cholesky, Isometry3, Point3, SVector, Vector3};
 
-/// Bodies between whose origins the bones run, counted from the first body of the limb: thigh and
-/// shin of a leg, upper arm and forearm of an arm.
-const LEG_BONES: [(usize, usize); 2] = [(1, 3), (3, 4)];
-const ARM_BONES: [(usize, usize); 2] = [(1, 3), (3, 4)];
-const LEGS: [usize; 2] = [LEFT_LEG, RIGHT_LEG];
-const ARMS: [usize; 2] = [LEFT_ARM, RIGHT_ARM];
-/// The foot is the sixth body of a leg.
-const FOOT: usize = 5;
-
-/// Weights of squared residuals: directions and turns in rad, places in m.
+/// Weights of squared residuals: directions and turns in rad.
 const BONE: f64 = 2.0;
-const FOOT_TURN: f64 = 0.5;
-/// A millimetre of a planned foot weighs as much as six degrees of a bone.
-const PLANNED_PLACE: f64 = 2e4;
-const PLANNED_TURN: f64 = 20.0;
-const PLANNED_BONE: f64 = 0.05;
+const FOOT_TURN: f64 = 1.0;
+/// The same where a foot has its place, in stance and in swing.
+const PLANNED_BONE: (f64, f64) = (0.05, 3.0);
+const PLANNED_TURN: (f64, f64) = (1500.0, 0.3);
+/// A standing foot does not slip; along the leg, which is about upright, it gives way a little sooner.
+const PLANNED_WAY: (f64, f64) = (4e5, 10.0);
+const PLANNED_HEIGHT: (f64, f64) = (2e4, 10.0);
+/// What a foot on its edge weighs: its pitch against the bones.
+const TIPPED_BONE: f64 = 3.0;
+const TIPPED_PITCH: f64 = 0.3;
+/// A swinging sole that is too low.
+const SCUFFING: f64 = 2e3;
 /// Toward the default pose: decides what directions leave open (a straight arm's twist).
 const POSTURE: f64 = 2e-3;
 /// Toward the frame before.
 const CHANGE: f64 = 5e-3;
 
-/// Distance that is kept from a joint's limit, rad: `f32` rounds.
-const MARGIN: f64 = 1e-4;
-/// Share of a motor's top speed that is used.
-const SPEED_SHARE: f64 = 0.95;
-/// Steps after which a frame is taken as it is, and the change (rad) below which it is done.
-const STEPS: usize = 15;
-const FIRST_STEPS: usize = 200;
-const DONE: f64 = 1e-5;
+/// Steps of a frame at most, and the change below which it is done, rad.
+const STEPS: usize = 60;
+const DONE: f64 = 0.01;
+/// Cost from which on a second start is tried: a bone that is 20° off.
+const ROUGH: f64 = 0.24; // BONE · (2 sin 10°)²
 
-/// Where the feet must be, if that is known yet.
-pub type PlannedFeet = Option<[Isometry3<f64>; 2]>;
-
-/// The joint positions of a frame, rad, and which of them a bound holds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solved {
-    /// Joint positions, rad.
-    pub joints: [f64; JOINTS],
-    /// Held by the joint's position limit.
-    pub at_limit: [bool; JOINTS],
-    /// Held by the motor's speed limit.
-    pub at_speed: [bool; JOINTS],
+/// What directions ask of a leg: those of its bones, and its foot's orientation.
+pub(crate) fn leg(
+    chain: &Chain<6>,
+    target: &Target,
+    side: usize,
+    q: &SVector<f64, 6>,
+) -> Normal<6> {
+    let mut normal = Normal::new();
+    let pose = chain.pose(&target.frame(), q);
+    for (bone, ends) in target.bones[side].iter().zip(BONES) {
+        normal.point(&pose, ends, bone, BONE);
+    }
+    normal.turn(&pose, &target.feet[side], FOOT_TURN);
+    normal.stay(q, &chain.home, POSTURE);
+    normal
 }
 
-/// Solves a frame whose pelvis is at `base`, from the joints of the frame before.
-pub fn solve(
-    target: &Target,
+/// What is asked of a leg whose foot has its place.
+pub(crate) fn planned_leg(
+    chain: &Chain<6>,
     base: &Isometry3<f64>,
-    feet: PlannedFeet,
-    before: Option<&[f64; JOINTS]>,
-    guess: &[f64; JOINTS],
-) -> Solved {
-    let bounds = Bounds::of(before);
-    let start = before.unwrap_or(guess);
-    let mut q = *guess;
-    q[WAIST] = target.waist;
-    bounds.clamp(&mut q);
-    let steps = if before.is_some() { STEPS } else { FIRST_STEPS };
-    for _ in 0..steps {
-        let bodies = forward(base, &q);
-        let mut change: f64 = 0.0;
-        for side in 0..2 {
-            let mut leg = Limb::<6>::new(LEGS[side], &bodies);
-            match &feet {
-                Some(feet) => leg.reach(&bodies, &target.bones[side], &feet[side]),
-                None => leg.swing(&bodies, &target.bones[side], &target.feet[side]),
+    bones: &[Vector3<f64>; 4],
+    foot: &Foothold,
+    q: &SVector<f64, 6>,
+) -> Normal<6> {
+    let between = |(stance, swing): (f64, f64)| swing * (stance / swing).powf(foot.firm);
+    let tipped = |flat: f64, tipped: f64| flat * (tipped / flat).powf(foot.tipped);
+    let mut normal = Normal::new();
+    let pose = chain.pose(base, q);
+    let bone = between((tipped(PLANNED_BONE.0, TIPPED_BONE), PLANNED_BONE.1));
+    for (direction, ends) in bones.iter().zip(BONES) {
+        normal.point(&pose, ends, direction, bone);
+    }
+    let (way, height) = (between(PLANNED_WAY), between(PLANNED_HEIGHT));
+    let place = (foot.frame * Point3::from(foot.pivot)).coords;
+    normal.reach(&pose, &foot.pivot, &place, &Vector3::new(way, way, height));
+    let turn = between(PLANNED_TURN);
+    let pitch = between((tipped(PLANNED_TURN.0, TIPPED_PITCH), PLANNED_TURN.1));
+    let weights = Vector3::new(turn, pitch, turn);
+    normal.turn_about(&pose, &foot.frame.rotation, &foot.frame.rotation, &weights);
+    if foot.clearance > 0.0 {
+        clear(&mut normal, &pose, foot.clearance);
+    }
+    normal.stay(q, &chain.home, POSTURE);
+    normal
+}
+
+/// The lowest corner of a swinging sole shall not be too low.
+fn clear(normal: &mut Normal<6>, pose: &Pose<6>, height: f64) {
+    let corners = SOLE_CORNERS.map(|corner| pose.end() * Point3::from(corner));
+    let lowest = (0..4).min_by(|&a, &b| corners[a].z.total_cmp(&corners[b].z));
+    let Some(k) = lowest.filter(|&k| corners[k].z < height) else {
+        return;
+    };
+    let to = Vector3::new(corners[k].x, corners[k].y, height);
+    let only_up = Vector3::new(0.0, 0.0, SCUFFING);
+    normal.reach(pose, &Vector3::from(SOLE_CORNERS[k]), &to, &only_up);
+}
+
+/// What directions ask of an arm that hangs on `torso`.
+pub(crate) fn arm(
+    chain: &Chain<5>,
+    torso: &Isometry3<f64>,
+    target: &Target,
+    side: usize,
+    q: &SVector<f64, 5>,
+) -> Normal<5> {
+    let mut normal = Normal::new();
+    let pose = chain.pose(torso, q);
+    for (bone, ends) in target.bones[side][2..].iter().zip(BONES) {
+        normal.point(&pose, ends, bone, BONE);
+    }
+    normal.stay(q, &chain.home, POSTURE);
+    normal
+}
+
+/// A limb through all frames, each from the one before.
+pub(crate) fn march<const N: usize>(
+    chain: &Chain<N>,
+    frames: usize,
+    task: &impl Fn(usize, &SVector<f64, N>) -> Normal<N>,
+) -> Vec<SVector<f64, N>> {
+    let mut path: Vec<SVector<f64, N>> = Vec::with_capacity(frames);
+    for i in 0..frames {
+        let before = path.last().copied();
+        let asked = |q: &SVector<f64, N>| {
+            let mut normal = task(i, q);
+            if let Some(before) = &before {
+                normal.stay(q, before, CHANGE);
             }
-            change = change.max(leg.step(&mut q, start, &bounds));
-            // What the feet must do changes nothing for the arms.
-            let mut arm = Limb::<5>::new(ARMS[side], &bodies);
-            for (bone, (from, to)) in target.bones[side][2..].iter().zip(ARM_BONES) {
-                arm.point(&bodies, (from, to), bone, BONE);
+            normal
+        };
+        let (mut best, cost) = settle(chain, before.unwrap_or(chain.home), &asked);
+        if cost > ROUGH && before.is_some() {
+            let (other, less) = settle(chain, chain.home, &asked);
+            if less < 0.5 * cost {
+                best = other;
             }
-            change = change.max(arm.step(&mut q, start, &bounds));
         }
-        if change < DONE {
+        path.push(best);
+    }
+    path
+}
+
+/// The nearest minimum, and its cost.
+fn settle<const N: usize>(
+    chain: &Chain<N>,
+    start: SVector<f64, N>,
+    task: &impl Fn(&SVector<f64, N>) -> Normal<N>,
+) -> (SVector<f64, N>, f64) {
+    let mut q = chain.clamped(&start);
+    let mut now = task(&q);
+    let mut damping = 1e-3;
+    for _ in 0..STEPS {
+        let trial = chain.clamped(&(q + step(chain, &q, &now, damping)));
+        let then = task(&trial);
+        if then.cost < now.cost {
+            let change = (trial - q).amax();
+            (q, now) = (trial, then);
+            damping = f64::max(0.1 * damping, 1e-6);
+            if change < DONE {
+                break;
+            }
+        } else if damping > 1e3 {
             break;
+        } else {
+            damping *= 10.0;
         }
     }
-    bounds.judged(q)
+    (q, now.cost)
+}
+
+/// The damped step of the joints that no bound holds.
+fn step<const N: usize>(
+    chain: &Chain<N>,
+    q: &SVector<f64, N>,
+    normal: &Normal<N>,
+    damping: f64,
+) -> SVector<f64, N> {
+    let (mut matrix, mut right) = (normal.matrix, normal.right);
+    for k in 0..N {
+        if chain.held(k, q[k], right[k]) {
+            matrix.row_mut(k).fill(0.0);
+            matrix.column_mut(k).fill(0.0);
+            matrix[(k, k)] = 1.0;
+            right[k] = 0.0;
+        } else {
+            matrix[(k, k)] *= 1.0 + damping;
+            matrix[(k, k)] += damping;
+        }
+    }
+    Cholesky::new(matrix).map_or_else(SVector::zeros, |c| c.solve(&right))
 }
 
 /// Directions of thigh, shin, upper arm and forearm as the robot has them, by side.
@@ -101,212 +198,12 @@ pub fn bones(bodies: &[Isometry3<f64>; BODIES]) -> [[Vector3<f64>; 4]; 2] {
             (b - a).normalize()
         };
         [
-            bone(LEGS[side], LEG_BONES[0]),
-            bone(LEGS[side], LEG_BONES[1]),
-            bone(ARMS[side], ARM_BONES[0]),
-            bone(ARMS[side], ARM_BONES[1]),
+            bone(LEGS[side], BONES[0]),
+            bone(LEGS[side], BONES[1]),
+            bone(ARMS[side], BONES[0]),
+            bone(ARMS[side], BONES[1]),
         ]
     })
-}
-
-/// How far each joint may go in this frame.
-struct Bounds {
-    lower: [f64; JOINTS],
-    upper: [f64; JOINTS],
-}
-
-impl Bounds {
-    fn of(before: Option<&[f64; JOINTS]>) -> Self {
-        let mut bounds = Self {
-            lower: JOINT_TABLE.map(|joint| joint.lower + MARGIN),
-            upper: JOINT_TABLE.map(|joint| joint.upper - MARGIN),
-        };
-        if let Some(before) = before {
-            for (i, joint) in JOINT_TABLE.iter().enumerate() {
-                let reach = SPEED_SHARE * joint.velocity_limit / RATE;
-                bounds.lower[i] = bounds.lower[i].max(before[i] - reach);
-                bounds.upper[i] = bounds.upper[i].min(before[i] + reach);
-            }
-        }
-        bounds
-    }
-
-    fn clamp(&self, q: &mut [f64; JOINTS]) {
-        for (i, q) in q.iter_mut().enumerate() {
-            *q = q.clamp(self.lower[i], self.upper[i]);
-        }
-    }
-
-    fn judged(&self, joints: [f64; JOINTS]) -> Solved {
-        let held = |i: usize| joints[i] <= self.lower[i] || joints[i] >= self.upper[i];
-        let limit = |i: usize| {
-            let joint = &JOINT_TABLE[i];
-            joints[i] <= joint.lower + MARGIN || joints[i] >= joint.upper - MARGIN
-        };
-        Solved {
-            joints,
-            at_limit: std::array::from_fn(limit),
-            at_speed: std::array::from_fn(|i| held(i) && !limit(i)),
-        }
-    }
-}
-
-/// The normal equations of a limb of `N` joints in a row.
-struct Limb<const N: usize> {
-    first: usize,
-    axes: [Vector3<f64>; N],
-    origins: [Vector3<f64>; N],
-    normal: SMatrix<f64, N, N>,
-    right: SVector<f64, N>,
-}
-
-impl<const N: usize> Limb<N> {
-    fn new(first: usize, bodies: &[Isometry3<f64>; BODIES]) -> Self {
-        // Joint i moves body i + 1 and its axis is fixed to that body too.
-        let body = |k: usize| &bodies[first + 1 + k];
-        Self {
-            first,
-            axes: std::array::from_fn(|k| {
-                body(k).rotation * Vector3::from(JOINT_TABLE[first + k].axis)
-            }),
-            origins: std::array::from_fn(|k| body(k).translation.vector),
-            normal: SMatrix::zeros(),
-            right: SVector::zeros(),
-        }
-    }
-
-    /// How the origin of the limb's `body` moves with its joints.
-    fn jacobian(&self, body: usize) -> SMatrix<f64, 3, N> {
-        SMatrix::from_fn(|row, k| {
-            if k <= body {
-                self.axes[k].cross(&(self.origins[body] - self.origins[k]))[row]
-            } else {
-                0.0
-            }
-        })
-    }
-
-    fn add(&mut self, jacobian: &SMatrix<f64, 3, N>, error: &Vector3<f64>, weight: f64) {
-        self.normal += jacobian.transpose() * jacobian * weight;
-        self.right += jacobian.transpose() * error * weight;
-    }
-
-    /// A bone between the origins of two bodies shall point in a direction.
-    fn point(
-        &mut self,
-        bodies: &[Isometry3<f64>; BODIES],
-        (from, to): (usize, usize),
-        direction: &Vector3<f64>,
-        weight: f64,
-    ) {
-        let [a, b] = [from, to].map(|k| bodies[self.first + 1 + k].translation.vector);
-        let length = (b - a).norm();
-        let now = (b - a) / length;
-        let moves = (self.jacobian(to) - self.jacobian(from)) / length;
-        // Only what turns the bone: its length is not to be changed.
-        let across = moves - now * (now.transpose() * moves);
-        self.add(&across, &(direction - now), weight);
-    }
-
-    /// The end of the limb shall turn to an orientation.
-    fn turn(
-        &mut self,
-        bodies: &[Isometry3<f64>; BODIES],
-        to: &nalgebra::UnitQuaternion<f64>,
-        weight: f64,
-    ) {
-        let now = bodies[self.first + N].rotation;
-        let jacobian = SMatrix::from_fn(|row, k| self.axes[k][row]);
-        self.add(&jacobian, &(to * now.inverse()).scaled_axis(), weight);
-    }
-
-    /// Bounded Δq, applied; returns the largest change, rad.
-    fn step(&mut self, q: &mut [f64; JOINTS], start: &[f64; JOINTS], bounds: &Bounds) -> f64 {
-        const LARGEST: f64 = 0.4;
-        const DAMPING: f64 = 1e-6;
-        for k in 0..N {
-            let i = self.first + k;
-            self.normal[(k, k)] += POSTURE + CHANGE + DAMPING;
-            self.right[k] +=
-                POSTURE * (f64::from(DEFAULT_POSE[i]) - q[i]) + CHANGE * (start[i] - q[i]);
-        }
-        let mut held: [Option<f64>; N] = [None; N];
-        let mut step = SVector::<f64, N>::zeros();
-        // Each round holds at least one more joint, so N + 1 are enough.
-        for _ in 0..=N {
-            step = self.solve_holding(&held);
-            let mut more = false;
-            for k in 0..N {
-                let i = self.first + k;
-                let (low, high) = (bounds.lower[i] - q[i], bounds.upper[i] - q[i]);
-                if held[k].is_none() && !(low..=high).contains(&step[k]) {
-                    held[k] = Some(step[k].clamp(low, high));
-                    more = true;
-                }
-            }
-            if !more {
-                break;
-            }
-        }
-        let scale = (LARGEST / step.amax()).min(1.0);
-        for k in 0..N {
-            let i = self.first + k;
-            q[i] = (q[i] + scale * step[k]).clamp(bounds.lower[i], bounds.upper[i]);
-        }
-        step.amax()
-    }
-
-    /// The step in which some joints move by given amounts.
-    fn solve_holding(&self, held: &[Option<f64>; N]) -> SVector<f64, N> {
-        let (mut normal, mut right) = (self.normal, self.right);
-        for (k, amount) in held.iter().enumerate() {
-            if let Some(amount) = amount {
-                right -= self.normal.column(k) * *amount;
-            }
-        }
-        for (k, amount) in held.iter().enumerate() {
-            if let Some(amount) = amount {
-                normal.row_mut(k).fill(0.0);
-                normal.column_mut(k).fill(0.0);
-                normal[(k, k)] = 1.0;
-                right[k] = *amount;
-            }
-        }
-        // Damping makes the matrix positive definite.
-        normal
-            .cholesky()
-            .map_or_else(SVector::zeros, |c| c.solve(&right))
-    }
-}
-
-impl Limb<6> {
-    /// A leg whose foot may be anywhere: directions only.
-    fn swing(
-        &mut self,
-        bodies: &[Isometry3<f64>; BODIES],
-        bones: &[Vector3<f64>; 4],
-        foot: &nalgebra::UnitQuaternion<f64>,
-    ) {
-        for (bone, ends) in bones.iter().zip(LEG_BONES) {
-            self.point(bodies, ends, bone, BONE);
-        }
-        self.turn(bodies, foot, FOOT_TURN);
-    }
-
-    /// A leg whose foot has its place: directions count where the foot leaves a choice.
-    fn reach(
-        &mut self,
-        bodies: &[Isometry3<f64>; BODIES],
-        bones: &[Vector3<f64>; 4],
-        foot: &Isometry3<f64>,
-    ) {
-        for (bone, ends) in bones.iter().zip(LEG_BONES) {
-            self.point(bodies, ends, bone, PLANNED_BONE);
-        }
-        let gap = foot.translation.vector - self.origins[FOOT];
-        self.add(&self.jacobian(FOOT), &gap, PLANNED_PLACE);
-        self.turn(bodies, &foot.rotation, PLANNED_TURN);
-    }
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use crate::contact::Contact;
 use crate::signal;
 use g1::JOINT_TABLE;
 use g1::joints::WAIST;
-use nalgebra::{Rotation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Rotation3, Unit, UnitQuaternion, Vector3};
 
 /// Thigh, shin and ankle of the robot in line, m: hip roll to knee, knee to ankle pitch, ankle pitch
 /// to ankle roll.
@@ -38,6 +38,13 @@ pub struct Target {
     pub bones: [[Vector3<f64>; 4]; 2],
     /// Orientation of the feet: x to the toe, z out of the sole's back.
     pub feet: [UnitQuaternion<f64>; 2],
+}
+
+impl Target {
+    /// Frame of the pelvis, before the feet are put on the ground.
+    pub fn frame(&self) -> Isometry3<f64> {
+        Isometry3::from_parts(self.place.into(), self.pelvis)
+    }
 }
 
 /// Ratio of the robot's legs to the human's.
