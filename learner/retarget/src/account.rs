@@ -50,6 +50,7 @@ pub(crate) fn account(
         stances: plan.stances,
         feet_moved: plan.moved,
         lowered: plan.lowered,
+        unreached: plan.unreached,
         carried: carried.fold(0.0, f64::max),
         lifted,
         at_limit: held(&at_limit(postures)),

@@ -50,6 +50,8 @@ pub struct Plan {
     pub moved: f64,
     /// Most that the pelvis was lowered because a leg did not reach, m.
     pub lowered: f64,
+    /// Farthest that a foot is kept from its place because the leg does not reach all the same, m.
+    pub unreached: f64,
 }
 
 /// A foot's frame on the ground; `None` where it does not stand.
@@ -68,6 +70,7 @@ pub fn plan(free: &[Free], contacts: &[Contact]) -> Plan {
     let soles = Side::BOTH.map(|side| planted(free, side, &standing[side.index()]));
     let carried = pelvis::carry(free, &soles);
     let paths = Side::BOTH.map(|side| path(free, side, &carried.shift, &soles[side.index()]));
+    let (paths, unreached) = reached(free, &carried.shift, paths);
     let moved = (0..2).flat_map(|s| {
         let gap = move |(sole, free): (&Option<Isometry3<f64>>, &Free)| {
             let place = free.feet[s].translation.vector;
@@ -82,8 +85,28 @@ pub fn plan(free: &[Free], contacts: &[Contact]) -> Plan {
         stances: standing.iter().map(Vec::len).sum(),
         moved: moved.fold(0.0, f64::max),
         lowered: carried.lowered,
+        unreached,
         shift: carried.shift,
     }
+}
+
+/// The paths with every foot within its leg's reach, and the farthest that one was moved for it.
+fn reached(
+    free: &[Free],
+    shift: &[Vector3<f64>],
+    mut paths: [Vec<Foothold>; 2],
+) -> ([Vec<Foothold>; 2], f64) {
+    let mut most: f64 = 0.0;
+    for (s, path) in paths.iter_mut().enumerate() {
+        for ((foot, free), shift) in path.iter_mut().zip(free).zip(shift) {
+            let back = pelvis::overreach(&(free.hips[s] + shift), &foot.frame);
+            foot.frame.translation.vector += back;
+            if foot.firm == 1.0 {
+                most = most.max(back.norm());
+            }
+        }
+    }
+    (paths, most)
 }
 
 /// Where a foot stands: it rolls over its edges in the place that moves its own path least.

@@ -13,9 +13,10 @@ use nalgebra::{Isometry3, Matrix3, SVector, Vector3};
 
 /// A planted leg is not asked to be straighter than this, rad: at 0 its length says nothing of its knee.
 const STRAIGHTEST: f64 = 0.07;
-/// Weights: a leg's length at [`USUAL_SLOPE`], its other directions, no shift, a squared second difference.
-const ACROSS: f64 = 2e-3;
-const STAY: [f64; 3] = [0.02, 0.02, 2e-3];
+/// Weights: of a shift by axis, of its squared second difference; that of a leg's length is 1 at
+/// [`USUAL_SLOPE`]. The pelvis rises and falls freely; over the ground it stays
+/// about where the human's balance has it.
+const STAY: [f64; 3] = [0.15, 0.15, 2e-3];
 const BEND: f64 = 5.0;
 /// How much more a leg that is too long for its knee weighs than one that is too short.
 const STRETCHED: f64 = 4.0;
@@ -26,6 +27,8 @@ const SLOPE_WEIGHTS: (f64, f64) = (0.25, 9.0);
 const SMOOTHING: f64 = 3.0;
 /// How much less a foot on its edge says: it may tip more or less.
 const LOOSE: f64 = 0.7;
+/// A leg that is too long by more than this has a foot that is not to be reached, m.
+const MOST: f64 = 0.08;
 const ROUNDS: usize = 4;
 
 /// The pelvis' way against that of the targets.
@@ -95,15 +98,14 @@ pub(crate) fn carry(free: &[Free], soles: &[Soles; 2]) -> Carried {
 fn fit(row: &mut Row<3>, free: &Vector3<f64>, now: &Vector3<f64>, (share, longest): (f64, f64)) {
     let wanted = free.norm().min(longest);
     let along = now.normalize();
-    let too_long = now.norm() - wanted;
+    let too_long = (now.norm() - wanted).min(MOST);
     let mut weight = (USUAL_SLOPE / slope(wanted)).powi(2);
     weight = share * weight.clamp(SLOPE_WEIGHTS.0, SLOPE_WEIGHTS.1);
     if too_long > 0.0 {
         weight *= STRETCHED;
     }
-    let across = Matrix3::identity() - along * along.transpose();
-    row.own += along * along.transpose() * weight + across * ACROSS;
-    row.right += along * (weight * too_long) + across * (now - free) * ACROSS;
+    row.own += along * along.transpose() * weight;
+    row.right += along * (weight * too_long);
 }
 
 /// Adds that second differences shall be small.
@@ -140,18 +142,24 @@ fn raised(free: &[Free], soles: &[Soles; 2]) -> Vec<f64> {
     signal::gaussian(&signal::filled(&asked, otherwise), SMOOTHING)
 }
 
+/// How far a leg from a hip to a foot is beyond its reach: what the foot is to be moved by, m.
+pub(crate) fn overreach(hip: &Vector3<f64>, foot: &Isometry3<f64>) -> Vector3<f64> {
+    let leg = ankle_of(foot) - hip;
+    leg.normalize() * (length(STRAIGHTEST) - leg.norm()).min(0.0)
+}
+
 /// Origin of the ankle pitch joint over a level foot, m.
 fn ankle_of(foot: &Isometry3<f64>) -> Vector3<f64> {
     let above = -g1::JOINT_TABLE[LEGS[0] + ANKLE + 1].origin[2];
     foot.translation.vector + foot.rotation * Vector3::new(0.0, 0.0, above)
 }
 
-/// How much lower the hip must be for the ankle to be within reach, m.
+/// How much lower the hip must be for the ankle to be within reach, m; at most [`MOST`].
 fn beyond(leg: &Vector3<f64>, longest: f64) -> f64 {
     let reach = (longest * longest - leg.xy().norm_squared())
         .max(0.0)
         .sqrt();
-    (-leg.z - reach).max(0.0)
+    (-leg.z - reach).clamp(0.0, MOST)
 }
 
 /// Hip roll joint to ankle pitch joint when the knee is bent by an angle, m.
@@ -221,15 +229,29 @@ mod tests {
 
     #[test]
     fn the_pelvis_comes_down_to_what_the_legs_reach() {
-        // Hips 0.697 m over ankles, where legs reach 0.606 m.
-        let (free, soles) = standing(30, 0.75, 0.0);
+        // Hips 0.637 m over ankles, where legs reach 0.606 m.
+        let (free, soles) = standing(30, 0.69, 0.0);
         let carried = carry(&free, &soles);
         for shift in &carried.shift {
-            let leg = 0.75 + shift.z - 0.052558;
+            let leg = 0.69 + shift.z - 0.052558;
             assert!(leg < length(STRAIGHTEST) + 1e-9, "{leg} m");
             assert!(leg > 0.60, "{leg} m");
         }
-        assert!((carried.lowered - (0.75 - 0.052558 - length(STRAIGHTEST))).abs() < 2e-3);
+        assert!((carried.lowered - (0.69 - 0.052558 - length(STRAIGHTEST))).abs() < 2e-3);
+    }
+
+    #[test]
+    fn a_foot_beyond_reach_is_to_come_back_along_the_leg() {
+        // 0.8 m below the hip's level line and 0.6 m ahead of it: 1 m from hip to ankle.
+        let foot = Isometry3::translation(0.6, 0.0, -0.8 - 0.017558);
+        let back = overreach(&Vector3::zeros(), &foot);
+        let by = 1.0 - length(STRAIGHTEST);
+        assert!(
+            (back - Vector3::new(-0.6, 0.0, 0.8) * by).norm() < 1e-9,
+            "{back}"
+        );
+        let near = Isometry3::translation(0.0, 0.0, -0.55);
+        assert_eq!(overreach(&Vector3::zeros(), &near).norm(), 0.0);
     }
 
     /// One leg stands for half a second 3 mm higher than the other does after it: the way between is

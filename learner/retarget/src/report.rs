@@ -86,6 +86,8 @@ pub struct Report {
     pub feet_moved: f64,
     /// Most that the pelvis was lowered because a leg did not reach, m.
     pub lowered: f64,
+    /// Farthest that a standing foot was kept from its place because its leg did not reach it, m.
+    pub unreached: f64,
     /// Farthest that the pelvis was moved over the ground so that knees bend as the human's, m.
     #[serde(default)]
     pub carried: f64,
@@ -117,6 +119,12 @@ impl Report {
         if self.lowered > 5e-4 {
             let most = 100.0 * self.lowered;
             actions.push(format!("reach: lowered the pelvis by at most {most:.1} cm"));
+        }
+        if self.unreached > 5e-4 {
+            let most = 100.0 * self.unreached;
+            actions.push(format!(
+                "reach: kept standing feet up to {most:.1} cm from where they were locked"
+            ));
         }
         if self.carried > 5e-4 {
             let most = 100.0 * self.carried;
@@ -252,6 +260,7 @@ mod tests {
             stances: 5,
             feet_moved: 0.021,
             lowered: 0.0,
+            unreached: 0.0,
             carried: 0.004,
             lifted: 0.002,
             at_limit: held(&counts),

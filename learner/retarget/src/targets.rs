@@ -65,7 +65,7 @@ pub fn of(capture: &Capture, scale: f64, contacts: &[Contact]) -> Vec<Target> {
             .collect()
     };
     let (pitch, roll) = (lean(trunk_pitch), lean(trunk_roll));
-    // One frame: what is quicker in three angles of a whole trunk is noise of markers.
+    // One frame: what is quicker in the angles and the way of a whole trunk is noise of markers.
     let [yaw, pitch, roll] = [yaw, pitch, roll].map(|series| signal::gaussian(&series, 1.0));
     let pelvis = |i: usize| UnitQuaternion::from_euler_angles(roll[i], pitch[i], yaw[i]);
     let mut waist: Vec<f64> = (0..capture.frames.len())
@@ -73,13 +73,17 @@ pub fn of(capture: &Capture, scale: f64, contacts: &[Contact]) -> Vec<Target> {
         .collect();
     signal::unwrap(&mut waist);
     let waist = signal::gaussian(&waist, 1.0);
+    let place: [Vec<f64>; 3] = std::array::from_fn(|axis| {
+        let hips = capture.frames.iter().map(|l| l.middle(Landmark::Hip)[axis]);
+        signal::gaussian(&hips.collect::<Vec<f64>>(), 1.0)
+    });
     let feet = Side::BOTH.map(|side| feet(capture, side, contacts, &pelvis));
     (0..capture.frames.len())
         .map(|i| {
             let (landmarks, pelvis) = (&capture.frames[i], pelvis(i));
             Target {
                 pelvis,
-                place: landmarks.middle(Landmark::Hip).coords * scale
+                place: Vector3::from_fn(|axis, _| place[axis][i]) * scale
                     + pelvis * Vector3::new(0.0, 0.0, HIP_DROP),
                 waist: waist[i].clamp(JOINT_TABLE[WAIST].lower, JOINT_TABLE[WAIST].upper),
                 bones: Side::BOTH.map(|side| bones(landmarks, side)),

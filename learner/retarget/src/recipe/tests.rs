@@ -124,7 +124,7 @@ fn people_walk_without_snaps_and_with_their_own_knees() {
         assert_possible(&postures);
         assert!(sharpest(&report) < SNAP, "{:?}", report.sharpest);
         assert!(
-            report.knee_error < 3.0,
+            report.knee_error < 4.5,
             "knees off by {}°",
             report.knee_error
         );
@@ -163,6 +163,47 @@ fn straight_legs_do_not_snap() {
     }
 }
 
+/// A capture that is cut, frozen for half a second or moved across the room is no reason to snap.
+#[test]
+fn breaks_of_a_capture_are_crossed_without_snaps() {
+    let clean = puppet::walking(60.0, 3.0);
+    for at in [50, 63, 76, 89] {
+        let (mut moved, mut frozen, mut cut) = (clean.clone(), clean.clone(), clean.clone());
+        for frame in &mut moved.frames[at..] {
+            for point in &mut frame.0 {
+                *point += Vector3::new(1.0, 0.5, 0.0);
+            }
+        }
+        frozen.frames[at..at + 30].fill(clean.frames[at]);
+        cut.frames.drain(at..at + 10);
+        for capture in [moved, frozen, cut] {
+            let (postures, report) = retarget(&capture);
+            assert!(sharpest(&report) < SNAP, "{at}: {:?}", report.sharpest);
+            assert_possible(&postures);
+        }
+    }
+}
+
+/// Steps of twice the legs' length: no foot gets there, and the report says so.
+#[test]
+fn feet_out_of_reach_are_kept_back_and_it_is_said() {
+    let walk = Walk {
+        speed: 1.5,
+        period: 2.0,
+        leg: 0.75,
+        reach: 1.0,
+        ..Walk::PLAIN
+    };
+    let (postures, report) = retarget(&walk.capture());
+    assert_possible(&postures);
+    assert!(
+        report.lowered > 0.05 && report.unreached > 0.005,
+        "{report:?}"
+    );
+    let said = report.actions().join("\n");
+    assert!(said.contains("reach: kept standing feet up to"), "{said}");
+}
+
 #[test]
 fn standing_feet_do_not_slip() {
     let (postures, _) = retarget(&puppet::walking(120.0, 4.4));
@@ -193,9 +234,13 @@ fn the_same_capture_gives_the_same_clip_wherever_it_happens() {
 /// Longer than a window of the solver: nothing shows where windows meet.
 #[test]
 fn long_clips_are_as_smooth_as_short_ones() {
-    let (_, report) = retarget(&puppet::walking(50.0, 12.0));
-    assert!(report.frames > 600);
-    assert!(sharpest(&report) < 4.0, "{:?}", report.sharpest);
+    let [short, long] = [4.0, 12.0].map(|seconds| retarget(&puppet::walking(50.0, seconds)).1);
+    assert!(short.frames < 240 && long.frames > 600);
+    let (short, long) = (sharpest(&short), sharpest(&long));
+    assert!(
+        long < 1.1 * short,
+        "{long}° a frame², in a short clip {short}°"
+    );
 }
 
 #[test]
