@@ -7,6 +7,7 @@
 use super::file::File;
 use super::file::array::Array;
 use super::joints::{self, SDK_29};
+use super::lean;
 use crate::error::MotionError;
 use g1::{JOINT_TABLE, JOINTS};
 use retarget::signal::median;
@@ -227,8 +228,17 @@ pub(super) fn named(
             .find(|known| *known == joints::short(name));
         known.unwrap_or("another joint")
     };
+    let reach = |i: usize| {
+        let angles = (0..angles.frames()).map(|frame| angles.frame(frame)[i].abs());
+        angles.fold(0.0, f64::max)
+    };
+    let others: Vec<(String, f64)> = (0..names.len())
+        .map(|i| (joints::short(&names[i]).to_owned(), reach(i)))
+        .filter(|(name, _)| !SDK_29.contains(&name.as_str()))
+        .collect();
     let names: Vec<&'static str> = names.iter().map(known).collect();
     decisions.push("joints by the file's names".into());
+    lean::say_others(&others, decisions);
     let (angles, names) = whole(angles, names, decisions);
     match joints::columns(&names) {
         Ok(_) => Ok((angles, names)),

@@ -173,3 +173,21 @@ fn other_counts_of_joints_are_refused() {
         );
     }
 }
+
+#[test]
+fn joints_that_no_g1_has_are_named_if_they_moved() {
+    let file = File {
+        path: Path::new("walk.npz"),
+        bytes: b"",
+    };
+    let mut names: Vec<String> = SDK_29.iter().map(|name| format!("{name}_joint")).collect();
+    names.extend(["left_thumb_joint".into(), "head".into()]);
+    // The thumb reaches 1 rad (57°), the head 0.05 rad (3°).
+    let mut values = vec![0.0; 2 * 31];
+    (values[29], values[31 + 29], values[31 + 30]) = (0.3, -1.0, 0.05);
+    let angles = Array::of(vec![2, 31], values, false).unwrap();
+    let mut decisions = Vec::new();
+    named(&file, (&angles, "q"), &names, &mut decisions).unwrap();
+    let said = "left_thumb (57°): this robot has no such joint; left out";
+    assert_eq!(decisions, ["joints by the file's names", said]);
+}

@@ -11,7 +11,7 @@ use super::file::torch;
 use super::human::Joints;
 use super::joints::{self, Table};
 use super::order::{self, Said};
-use super::{Motion, Sure, isaac};
+use super::{Motion, Sure, isaac, rate};
 use crate::config::QuaternionOrder;
 use crate::error::MotionError;
 use g1::kinematics::forward;
@@ -174,7 +174,20 @@ fn rate(file: &File<'_>, pickle: &Pickle) -> Result<Option<f64>, MotionError> {
             "give the .motion files that it was made of, or a library of one",
         ));
     }
-    Ok(first("fps").or_else(|| first("motion_dt").map(|seconds| 1.0 / seconds)))
+    let stated = (
+        first("fps"),
+        first("motion_dt").map(|seconds| 1.0 / seconds),
+    );
+    if let (Some(fps), Some(of_dt)) = stated
+        && !rate::agree(fps, of_dt)
+    {
+        let of_dt = rate::shown(of_dt);
+        return Err(file.unusable(
+            &format!("states two rates: fps = {fps}, and {of_dt} frames a second by motion_dt"),
+            "keep the right one of them",
+        ));
+    }
+    Ok(stated.0.or(stated.1))
 }
 
 fn part<'n>(

@@ -166,6 +166,17 @@ fn libraries_of_many_and_broken_files_are_refused() {
         message.contains("3 motions") && message.contains(".motion"),
         "{message}"
     );
+    // 30 (K\x1e) frames a second, and 0.02 s between them.
+    let two = Archive::new()
+        .value("fps", b"K\x1e")
+        .tensor("motion_dt", &[1], &[0.02])
+        .tensor("gts", &[1, 24, 3], &[0.0; 72])
+        .done();
+    let message = told(&two).unwrap_err();
+    assert!(
+        message.contains("fps = 30, and 50 frames a second by motion_dt"),
+        "{message}"
+    );
     let few = Archive::new()
         .value("fps", b"K\x32")
         .tensor("gts", &[1, 24, 3], &[0.0; 72])
