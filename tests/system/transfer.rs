@@ -28,7 +28,12 @@ fn what_is_exported_walks_in_mujoco_by_the_tests_of_the_transfer() {
     made(&["export"], "--out", &export);
     made(&["play", "--seconds", "2"], "--json", &recording);
     let output = Command::new(python)
-        .args(["-m", "unittest", "transfer.test_transfer"])
+        .args([
+            "-m",
+            "unittest",
+            "transfer.test_transfer",
+            "transfer.test_table",
+        ])
         .current_dir(repository().join("deploy"))
         .env("PYTHONDONTWRITEBYTECODE", "1")
         .env("AMPCO_EXPORT", &export)

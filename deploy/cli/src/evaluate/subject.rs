@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use amp::{LearningConfig, PolicyConfig};
+use amp::{Learning, LearningConfig, PolicyConfig};
 use anyhow::{Context, Result};
 use motion::MotionConfig;
 use policy::{Policy, Shape};
@@ -92,25 +92,30 @@ impl Kept {
         Ok((Shape::new(&self.learning.policy.hidden), flat))
     }
 
-    /// The task that it was trained for, as the curriculum had it when this checkpoint was written.
+    /// The task that it was trained for, as its ramps had it when this checkpoint was written.
     pub(crate) fn task(&self) -> Result<TaskConfig> {
         let task: TaskConfig = self.config.checked("task", TaskConfig::validate)?;
-        Ok(task.at(self.samples()? as f64))
+        let (first, last) = (task.at(0.0), task.at(f64::MAX));
+        // Where nothing moves nobody has to count.
+        if first == last {
+            return Ok(last);
+        }
+        Ok(task.at(self.samples()?))
     }
 
     /// Samples that it has learnt from. A shipped policy does not say; iterations of full batches have made it.
-    fn samples(&self) -> Result<u64> {
-        #[derive(serde::Deserialize)]
-        struct Counted {
-            samples: u64,
-        }
-        if let Ok(shell) = self.part("shell.json") {
-            let counted: Counted = serde_json::from_slice(shell)
-                .with_context(|| format!("reading shell.json of {}", self.path.display()))?;
-            return Ok(counted.samples);
+    fn samples(&self) -> Result<f64> {
+        if let Ok(bytes) = self.part("learning.bin") {
+            // The seed is of weights that are replaced at once.
+            let mut learning = Learning::new(self.learning.clone(), learner::robot(), 0)
+                .context("setting up the networks")?;
+            learning
+                .load(bytes)
+                .with_context(|| format!("loading learning.bin of {}", self.path.display()))?;
+            return Ok(learning.samples() as f64);
         }
         let fleet: FleetConfig = self.config.checked("fleet", FleetConfig::validate)?;
-        Ok(self.iteration * (fleet.environments * fleet.steps) as u64)
+        Ok(self.iteration as f64 * fleet.environments as f64 * fleet.steps as f64)
     }
 
     /// The configuration that it was trained under.
