@@ -229,8 +229,13 @@ fn read(
             (Motion::Human(joints), options.fps.or(Some(amc::USUAL_FPS)))
         }
         Format::Csv => {
-            let table = csv::parse(file)?;
+            let mut table = csv::parse(file)?;
             let fps = table.fps(file, options)?;
+            if table.unsure {
+                let (rows, told) = order::of_rows(file, table.rows)?;
+                decisions.push(told);
+                table.rows = rows;
+            }
             let motion = match (table.ours, table.named) {
                 (true, _) if !options.force_fps => Motion::Finished(table.rows),
                 (_, true) => Motion::Robot(table.rows, Sure::Yes),

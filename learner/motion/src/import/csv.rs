@@ -5,7 +5,7 @@
 //! Columns: x y z (m), quaternion, joints (rad). With a header they are found by name in any order
 //! (`x y z qw qx qy qz` and joint names with or without `_joint`, the six that only the 29-joint robot
 //! has among them; `time` in s or a counting `frame` is checked to be even).
-//! Without one there are 30 columns in robot order, or 36 in the order of the 29-joint robot. BONES-SEED
+//! Without one there are 30 columns in one of two orders (see `order.rs`), or 36 in the order of the 29-joint robot. BONES-SEED
 //! tables (`root_translateX` in cm, `root_rotateX` and joints in degrees) are known by their header. A
 //! comment `# fps = 50` says the rate.
 
@@ -31,6 +31,8 @@ pub(super) struct Table {
     pub(super) rows: Vec<Row>,
     /// Whether a header names the columns.
     pub(super) named: bool,
+    /// Whether there are 23 joints without names: rows are read in our own order, which may be another.
+    pub(super) unsure: bool,
     /// Whether it is a table as [`export`] writes them.
     pub(super) ours: bool,
     /// The rates that it states.
@@ -104,6 +106,7 @@ pub(super) fn parse(file: &File<'_>) -> Result<Table, MotionError> {
     Ok(Table {
         rows,
         named,
+        unsure: !named && layout.width == FIELDS,
         ours,
         stated,
     })

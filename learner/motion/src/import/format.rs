@@ -118,6 +118,9 @@ const ARRAYS: [(Format, [&str; 2]); 5] = [
     (Format::AmpRslRl, ["joints_list", "joint_positions"]),
 ];
 
+/// What PyTorch's files began with before they were archives: a pickled number.
+const OLD_TORCH: &[u8] = b"\x80\x02\x8a\x0al\xfc\x9cF\xf9 j\xa8P\x19";
+
 /// The format of a file and by what it was told.
 pub(super) fn detect(file: &File<'_>) -> Result<(Format, String), MotionError> {
     let bytes = file.bytes;
@@ -130,6 +133,12 @@ pub(super) fn detect(file: &File<'_>) -> Result<(Format, String), MotionError> {
             return Ok((Format::AmpRslRl, "joints_list and joint_positions".into()));
         }
         return Ok((Format::IsaacGym, "a NumPy array of one object".into()));
+    }
+    if bytes.starts_with(OLD_TORCH) {
+        return Err(file.unusable(
+            "was saved by PyTorch in its old format, which is no archive",
+            "save it again: python -c \"import torch, sys; torch.save(torch.load(sys.argv[1], weights_only=True), sys.argv[2])\" FILE NEW",
+        ));
     }
     if bytes.first() == Some(&0x80) {
         return detect_pickle(file);
@@ -330,6 +339,8 @@ mod tests {
         assert!(message.contains("cut off"), "{message}");
         let message = told(b"\x80\x04}\x8c\x01aK\x01s.").unwrap_err();
         assert!(message.contains("pickle with a,"), "{message}");
+        let message = told(b"\x80\x02\x8a\nl\xfc\x9cF\xf9 j\xa8P\x19.\x80\x02M").unwrap_err();
+        assert!(message.contains("torch.save"), "{message}");
         let message = told(b"PK\x03\x04 cut off").unwrap_err();
         assert!(message.contains("again"), "{message}");
     }

@@ -136,7 +136,8 @@ pub(super) struct Columns {
 }
 
 /// The columns of joints among named ones; the name of the first of ours that is missing.
-pub(super) fn columns(names: &[&str]) -> Result<Columns, &'static str> {
+pub(super) fn columns<S: AsRef<str>>(names: &[S]) -> Result<Columns, &'static str> {
+    let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
     let find = |wanted: &str| names.iter().position(|name| short(name) == wanted);
     let mut columns = [0; JOINTS];
     for (column, wanted) in columns.iter_mut().zip(ours()) {
@@ -192,12 +193,18 @@ impl Table<'_> {
 
     /// Names of the file's joints that no G1 has, and how far they get from 0, rad.
     pub(super) fn others(&self) -> Vec<(String, f64)> {
-        let angles = self.joints.0;
+        self.columns.others_of(self.joints.0)
+    }
+}
+
+impl Columns {
+    /// Names of the joints that no G1 has, and how far they get from 0, rad.
+    pub(super) fn others_of(&self, angles: &Array) -> Vec<(String, f64)> {
         let reach = |column: usize| {
             let angles = (0..angles.frames()).map(|i| angles.frame(i)[column].abs());
             angles.fold(0.0, f64::max)
         };
-        let others = self.columns.others.iter();
+        let others = self.others.iter();
         others
             .map(|(name, column)| (name.clone(), reach(*column)))
             .collect()

@@ -7,7 +7,7 @@
 use super::file::File;
 use super::file::array::Array;
 use super::joints::{self, SDK_29};
-use super::lean;
+use super::{Row, lean};
 use crate::error::MotionError;
 use g1::{JOINT_TABLE, JOINTS};
 use retarget::signal::median;
@@ -45,6 +45,11 @@ impl Order {
                 std::array::from_fn(|_| names.next().expect("29 joints without six are 23"))
             }
         }
+    }
+
+    /// The columns in this order and their names, wrists and all.
+    pub(super) fn whole(self, angles: &Array, decisions: &mut Vec<String>) -> (Array, Vec<String>) {
+        whole(angles, self.names().map(String::from).to_vec(), decisions)
     }
 
     pub(super) fn told(self) -> &'static str {
@@ -166,7 +171,7 @@ pub(super) fn of_g1(
     (angles, name): (&Array, &str),
     said: Said,
     decisions: &mut Vec<String>,
-) -> Result<(Array, Vec<&'static str>), MotionError> {
+) -> Result<(Array, Vec<String>), MotionError> {
     angles.check(
         file,
         name,
@@ -175,7 +180,7 @@ pub(super) fn of_g1(
     )?;
     if angles.width() == SDK_29.len() {
         decisions.push("29 joints in the SDK's order".into());
-        return Ok((angles.clone(), SDK_29.to_vec()));
+        return Ok((angles.clone(), SDK_29.map(String::from).to_vec()));
     }
     let order = match (said, plausible(angles)) {
         (Said::User(order), told) => {
@@ -208,7 +213,7 @@ pub(super) fn of_g1(
             ));
         }
     };
-    Ok(whole(angles, order.names().to_vec(), decisions))
+    Ok(order.whole(angles, decisions))
 }
 
 /// The columns of a G1's joints that a file names, in its order; the wrists may be missing.
@@ -220,28 +225,15 @@ pub(super) fn named(
     (angles, name): (&Array, &str),
     names: &[String],
     decisions: &mut Vec<String>,
-) -> Result<(Array, Vec<&'static str>), MotionError> {
+) -> Result<(Array, Vec<String>), MotionError> {
     angles.check(file, name, &[names.len()], super::file::array::ANGLES)?;
-    let known = |name: &String| {
-        let known = SDK_29
-            .into_iter()
-            .find(|known| *known == joints::short(name));
-        known.unwrap_or("another joint")
-    };
-    let reach = |i: usize| {
-        let angles = (0..angles.frames()).map(|frame| angles.frame(frame)[i].abs());
-        angles.fold(0.0, f64::max)
-    };
-    let others: Vec<(String, f64)> = (0..names.len())
-        .map(|i| (joints::short(&names[i]).to_owned(), reach(i)))
-        .filter(|(name, _)| !SDK_29.contains(&name.as_str()))
-        .collect();
-    let names: Vec<&'static str> = names.iter().map(known).collect();
     decisions.push("joints by the file's names".into());
-    lean::say_others(&others, decisions);
-    let (angles, names) = whole(angles, names, decisions);
+    let (angles, names) = whole(angles, names.to_vec(), decisions);
     match joints::columns(&names) {
-        Ok(_) => Ok((angles, names)),
+        Ok(columns) => {
+            lean::say_others(&columns.others_of(&angles), decisions);
+            Ok((angles, names))
+        }
         Err(missing) => Err(file.unusable(
             &format!("names no joint {missing}"),
             "expected the joints of the G1, as left_knee_joint",
@@ -249,16 +241,45 @@ pub(super) fn named(
     }
 }
 
+/// Rows of 23 joints without names, which were read in our own order, in the order that fits; and how it
+/// was told.
+///
+/// # Errors
+/// Rows that could be either order.
+pub(super) fn of_rows(file: &File<'_>, rows: Vec<Row>) -> Result<(Vec<Row>, String), MotionError> {
+    let values = rows.iter().flat_map(|row| row.joints).collect();
+    let angles = Array::of(vec![rows.len(), JOINTS], values, false).expect("23 joints a row");
+    let (order, told) = plausible(&angles).map_err(|told| {
+        file.unusable(
+            &format!("has 23 joints without names that could be in two orders ({told})"),
+            "add a header that names the columns: x,y,z,qw,qx,qy,qz,left_hip_pitch_joint,…",
+        )
+    })?;
+    let (_, names) = order.whole(&angles, &mut Vec::new());
+    let columns = joints::columns(&names).expect("both orders have all joints");
+    let reread = |row: Row| {
+        // The wrists that an order lacks stand behind its columns.
+        let angle = |column: usize| row.joints.get(column).copied().unwrap_or(0.0);
+        Row {
+            joints: columns.ours.map(angle),
+            dropped: columns.dropped.map(|column| column.map_or(0.0, angle)),
+            ..row
+        }
+    };
+    let told = format!("{}: {told}", order.told());
+    Ok((rows.into_iter().map(reread).collect(), told))
+}
+
 /// Adds the wrists, at zero, if the columns lack them.
 pub(super) fn whole(
     angles: &Array,
-    mut names: Vec<&'static str>,
+    mut names: Vec<String>,
     decisions: &mut Vec<String>,
-) -> (Array, Vec<&'static str>) {
+) -> (Array, Vec<String>) {
     let width = names.len();
     for wrist in ["left_wrist_roll", "right_wrist_roll"] {
-        if !names.contains(&wrist) {
-            names.push(wrist);
+        if !names.iter().any(|name| joints::short(name) == wrist) {
+            names.push(wrist.into());
         }
     }
     if names.len() > width {

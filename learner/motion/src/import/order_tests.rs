@@ -28,7 +28,7 @@ const HANGING: [(&str, f64); 9] = [
     ("right_wrist_roll", -0.1),
 ];
 
-fn told(angles: &Array, said: Said) -> Result<(Array, Vec<&'static str>, Vec<String>), String> {
+fn told(angles: &Array, said: Said) -> Result<(Array, Vec<String>, Vec<String>), String> {
     let file = File {
         path: Path::new("walk.pkl"),
         bytes: b"",
@@ -39,7 +39,7 @@ fn told(angles: &Array, said: Said) -> Result<(Array, Vec<&'static str>, Vec<Str
         .map_err(|e| e.to_string())
 }
 
-fn angle(array: &Array, names: &[&str], name: &str) -> f64 {
+fn angle(array: &Array, names: &[String], name: &str) -> f64 {
     array.frame(0)[names.iter().position(|n| *n == name).unwrap()]
 }
 
@@ -190,4 +190,44 @@ fn joints_that_no_g1_has_are_named_if_they_moved() {
     named(&file, (&angles, "q"), &names, &mut decisions).unwrap();
     let said = "left_thumb (57°): this robot has no such joint; left out";
     assert_eq!(decisions, ["joints by the file's names", said]);
+}
+
+#[test]
+fn rows_without_names_are_read_in_the_order_that_fits() {
+    let file = File {
+        path: Path::new("walk.csv"),
+        bytes: b"",
+    };
+    let rows = |order: Order, posture: &[(&str, f64)]| -> Vec<Row> {
+        let angles = frames(order, 2, posture);
+        let row = |i: usize| Row {
+            position: nalgebra::Vector3::zeros(),
+            orientation: nalgebra::UnitQuaternion::identity(),
+            joints: angles.frame(i).try_into().unwrap(),
+            dropped: [0.0; 6],
+        };
+        (0..2).map(row).collect()
+    };
+    let mut leaning = HANGING.to_vec();
+    leaning.push(("waist_pitch", 0.2));
+    for order in Order::BOTH {
+        let (rows, told) = of_rows(&file, rows(order, &leaning)).unwrap();
+        assert!(told.starts_with(order.told()), "{told}");
+        // Elbows are the 17th and the 22nd of ours, wrists follow them.
+        let wrist = if order == Order::Wrists { 0.1 } else { 0.0 };
+        assert_eq!(rows[1].joints[16..18], [0.9, wrist], "{order:?}");
+        assert_eq!(rows[1].joints[21..23], [0.9, -wrist], "{order:?}");
+        // The waist's pitch is the second of the joints that we lack.
+        let lean = if order == Order::Waist { 0.2 } else { 0.0 };
+        assert_eq!(rows[1].dropped[..2], [0.0, lean], "{order:?}");
+    }
+    let one_sided = rows(
+        Order::Wrists,
+        &[("left_shoulder_pitch", -0.4), ("right_elbow", 0.5)],
+    );
+    let message = of_rows(&file, one_sided).unwrap_err().to_string();
+    assert!(
+        message.contains("two orders") && message.contains("header"),
+        "{message}"
+    );
 }

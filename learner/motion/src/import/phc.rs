@@ -143,7 +143,7 @@ fn robot(
     let (angles, names) = match by_axes {
         Some(order) => {
             decisions.push(format!("joints by their axes in pose_aa: {}", order.told()));
-            order::whole(&angles, order.names().to_vec(), decisions)
+            order.whole(&angles, decisions)
         }
         None => {
             let said = if by_user { Said::User } else { Said::Usual };

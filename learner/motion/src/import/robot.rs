@@ -10,16 +10,16 @@ use super::file::array::{Array, PLACES};
 use super::file::npz::Archive;
 use super::file::pickle::Pickle;
 use super::joints::{self, ISAAC_23, ISAAC_29, SDK_29, Table};
-use super::lean;
 use super::order::{self, Order, Said};
 use crate::config::QuaternionOrder;
 use crate::error::MotionError;
 use g1::kinematics::forward;
-use g1::{LEFT_FOOT, RIGHT_FOOT};
 use nalgebra::{Isometry3, Vector3};
 
 /// Feet that are farther from the file's (m) are in no known order.
 const AGREES: f64 = 0.05;
+/// Elbows may be off by the lean of a waist that the rows have not: 0.35 m above it, by its 0.52 rad, m.
+const LEANS: f64 = 0.2;
 /// Frames that are compared.
 const LOOKS: usize = 50;
 
@@ -46,88 +46,126 @@ pub(super) fn beyond_mimic(
             .expect("a part of each frame")
     };
     let (pelvis, turn) = (first(&places, 3), first(&turns, 4));
-    let table = |names: &[&str]| {
-        let columns = joints::columns(names).map_err(|missing| {
-            file.unusable(
-                &format!("names no joint {missing}"),
-                "expected the joints of the G1",
-            )
-        })?;
-        Ok(Table {
+    let rows = |angles: &Array, names: &[String]| {
+        let table = Table {
             position: (&pelvis, "body_pos_w"),
             orientation: (&turn, "body_quat_w"),
-            joints: (&angles, "joint_pos"),
-            columns,
-        })
+            joints: (angles, "joint_pos"),
+            columns: joints::columns(names).expect("names were checked"),
+        };
+        table.rows(file, QuaternionOrder::Wxyz)
     };
-    if let Some(names) = archive.words("joint_names")? {
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        if names.len() == angles.width() {
-            decisions.push("joints by the file's names".into());
-            let table = table(&names)?;
-            lean::say_others(&table.others(), decisions);
-            return Ok((table.rows(file, QuaternionOrder::Wxyz)?, fps));
-        }
+    if let Some(names) = archive.words("joint_names")?
+        && names.len() == angles.width()
+    {
+        let (angles, names) = order::named(file, (&angles, "joint_pos"), &names, decisions)?;
+        return Ok((rows(&angles, &names)?, fps));
     }
-    let ours = joints::ours();
-    let orders: [(&str, &[&str]); 2] = if angles.width() == 29 {
-        [
+    let (ours, waist) = (joints::ours(), Order::Waist.names());
+    let orders: &[(&str, &[&str])] = if angles.width() == SDK_29.len() {
+        &[
             ("the SDK's order", &SDK_29),
             ("Isaac Lab's order", &ISAAC_29),
         ]
     } else {
-        [("the SDK's order", &ours), ("Isaac Lab's order", &ISAAC_23)]
+        &[
+            ("the SDK's order", &ours),
+            ("Isaac Lab's order", &ISAAC_23),
+            ("ASAP's order (waist of 3, arms of 4)", &waist),
+        ]
     };
-    let mut best: Option<(f64, &str, Vec<Row>)> = None;
+    let mut best: Option<(Gaps, &str, Vec<Row>, Vec<String>)> = None;
     let mut told = Vec::new();
-    for (name, names) in orders {
-        let rows = table(names)?.rows(file, QuaternionOrder::Wxyz)?;
-        let gap = feet_gap(&rows, &places, names);
-        told.push(format!("{:.1} cm in {name}", 100.0 * gap));
-        if best.as_ref().is_none_or(|(least, ..)| gap < *least) {
-            best = Some((gap, name, rows));
+    for &(name, names) in orders {
+        let mut added = Vec::new();
+        let words = names.iter().map(|name| (*name).to_owned()).collect();
+        let (whole, words) = order::whole(&angles, words, &mut added);
+        let rows = rows(&whole, &words)?;
+        let gaps = gaps(&rows, &places, names);
+        told.push(format!(
+            "{:.1} and {:.1} cm in {name}",
+            100.0 * gaps.feet,
+            100.0 * gaps.elbows
+        ));
+        if best
+            .as_ref()
+            .is_none_or(|(least, ..)| gaps.both() < least.both())
+        {
+            best = Some((gaps, name, rows, added));
         }
     }
-    let (gap, name, rows) = best.expect("there are orders");
-    let told = format!("joints in {name}: feet are off by {}", told.join(", "));
-    if gap > AGREES {
+    let (gaps, name, rows, added) = best.expect("there are orders");
+    if gaps.feet > AGREES || gaps.elbows > LEANS {
+        let problem = format!(
+            "has its joints in no known order (feet are off by {:.2} m, elbows by {:.2} m or more)",
+            gaps.feet, gaps.elbows
+        );
         return Err(file.unusable(
-            &format!(
-                "has its joints in no known order (feet are off by {:.2} m or more)",
-                gap
-            ),
+            &problem,
             "add an array joint_names, or export the motion of a G1",
         ));
     }
-    decisions.push(told);
+    decisions.push(format!(
+        "joints in {name}: feet and elbows are off by {}",
+        told.join(", ")
+    ));
+    decisions.extend(added);
     Ok((rows, fps))
 }
 
-/// Mean distance between the feet of rows and the file's bodies, which stand in the joints' order
-/// after the pelvis, m.
-fn feet_gap(rows: &[Row], places: &Array, names: &[&str]) -> f64 {
-    let body = |name: &str| {
-        1 + names
-            .iter()
-            .position(|n| *n == name)
-            .expect("orders have ankles")
+/// Mean distances between bodies of rows and those of the file, m.
+#[derive(Clone, Copy)]
+struct Gaps {
+    feet: f64,
+    elbows: f64,
+}
+
+impl Gaps {
+    fn both(self) -> f64 {
+        self.feet + self.elbows
+    }
+}
+
+/// The gaps between rows and a file whose bodies stand in the joints' order after the pelvis.
+fn gaps(rows: &[Row], places: &Array, names: &[&str]) -> Gaps {
+    let ours = joints::ours();
+    let bodies = |joint: &str| {
+        ["left", "right"].map(|side| {
+            let joint = format!("{side}_{joint}");
+            let body = |names: &[&str]| {
+                1 + names
+                    .iter()
+                    .position(|n| *n == joint)
+                    .expect("a joint of the G1")
+            };
+            (body(&ours), body(names))
+        })
     };
-    let feet = [
-        (LEFT_FOOT, body("left_ankle_roll")),
-        (RIGHT_FOOT, body("right_ankle_roll")),
-    ];
+    let (feet, elbows) = (bodies("ankle_roll"), bodies("elbow"));
     let step = (rows.len() / LOOKS).max(1);
-    let (mut sum, mut count) = (0.0, 0.0);
+    let (mut sums, mut count) = ([0.0; 2], 0.0);
     for i in (0..rows.len()).step_by(step) {
         let base = Isometry3::from_parts(rows[i].position.into(), rows[i].orientation);
         let bodies = forward(&base, &rows[i].joints);
-        for (ours, theirs) in feet {
-            let place = Vector3::from_column_slice(&places.frame(i)[3 * theirs..3 * theirs + 3]);
-            sum += (bodies[ours].translation.vector - place).norm();
-            count += 1.0;
+        for (sum, pairs) in sums.iter_mut().zip([feet, elbows]) {
+            for (ours, theirs) in pairs {
+                let place = &places.frame(i)[3 * theirs..3 * theirs + 3];
+                *sum +=
+                    (bodies[ours].translation.vector - Vector3::from_column_slice(place)).norm();
+            }
         }
+        count += 2.0;
     }
-    sum / f64::max(count, 1.0)
+    let [feet, elbows] = sums.map(|sum| sum / f64::max(count, 1.0));
+    Gaps {
+        feet,
+        // With 29 joints feet tell all, and arms hang on joints that the rows have not.
+        elbows: if names.len() == g1::JOINTS {
+            elbows
+        } else {
+            0.0
+        },
+    }
 }
 
 /// Reads a GMR file: rows with the scalar read first (the caller decides), frames per second. `by_user` if
@@ -168,7 +206,7 @@ fn columns(
     angles: Array,
     by_user: bool,
     decisions: &mut Vec<String>,
-) -> Result<(Array, Vec<&'static str>), MotionError> {
+) -> Result<(Array, Vec<String>), MotionError> {
     let named = ["joint_names", "dof_names"];
     if let Some(names) = named.iter().find_map(|key| pickle.words(&[key])) {
         return order::named(file, (&angles, "dof_pos"), &names, decisions);
@@ -184,6 +222,7 @@ fn columns(
             }
         };
         decisions.push("joints in Isaac Lab's order (it has a loop_mode)".into());
+        let names = names.into_iter().map(String::from).collect();
         return Ok((angles, names));
     }
     let said = if by_user {

@@ -21,7 +21,7 @@ fn named(state: &RobotState, names: &[&str]) -> Vec<f64> {
     names.iter().map(angle).collect()
 }
 
-/// BeyondMimic's layout in an order of joints; bodies other than pelvis and feet are at the origin.
+/// BeyondMimic's layout in an order of joints; bodies that the robot with 23 joints lacks are at the origin.
 pub(in crate::import) fn beyond_mimic_file(names: &[&str]) -> Vec<u8> {
     let frames = walk();
     let (mut angles, mut places, mut turns) = (Vec::new(), Vec::new(), Vec::new());
@@ -30,14 +30,16 @@ pub(in crate::import) fn beyond_mimic_file(names: &[&str]) -> Vec<u8> {
         let bodies = forward_state(state);
         for body in 0..=names.len() {
             let ours = match body.checked_sub(1).map(|joint| names[joint]) {
-                None => 0,
-                Some("left_ankle_roll") => LEFT_FOOT,
-                Some("right_ankle_roll") => RIGHT_FOOT,
-                Some(_) => {
-                    places.extend([0.0; 3]);
-                    turns.extend([1.0, 0.0, 0.0, 0.0]);
-                    continue;
-                }
+                None => Some(0),
+                Some(name) => joints::ours()
+                    .iter()
+                    .position(|ours| *ours == name)
+                    .map(|j| j + 1),
+            };
+            let Some(ours) = ours else {
+                places.extend([0.0; 3]);
+                turns.extend([1.0, 0.0, 0.0, 0.0]);
+                continue;
             };
             places.extend(
                 bodies[ours]
@@ -116,6 +118,7 @@ fn the_order_of_joints_is_told_by_where_the_feet_are() {
         (&ISAAC_29, "Isaac"),
         (&ours, "SDK"),
         (&ISAAC_23, "Isaac"),
+        (&Order::Waist.names(), "ASAP"),
     ] {
         let bytes = beyond_mimic_file(names);
         let mut decisions = Vec::new();
@@ -127,8 +130,13 @@ fn the_order_of_joints_is_told_by_where_the_feet_are() {
             "{decisions:?}"
         );
         for (row, state) in rows.iter().zip(walk()) {
-            for (a, b) in row.joints.iter().zip(state.joint_positions) {
-                assert!((a - f64::from(b)).abs() < 1e-6);
+            for ((a, b), name) in row.joints.iter().zip(state.joint_positions).zip(ours) {
+                let expected = if names.contains(&name) {
+                    f64::from(b)
+                } else {
+                    0.0
+                };
+                assert!((a - expected).abs() < 1e-6, "{told}: {name}");
             }
         }
     }
