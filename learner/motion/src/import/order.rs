@@ -30,7 +30,8 @@ const BEYOND: f64 = 0.1;
 /// order, 52 are read in theirs and 7 are refused; written in the robot's own order, all 59 are read so.
 const PAIR: f64 = 0.25;
 const CLEAR: f64 = 0.15;
-/// All columns from here on are zero: the orders say the same.
+/// Where all columns from [`ARMS`] on are so near to zero, rad, the orders say the same.
+const NOTHING: f64 = 0.02;
 const ARMS: usize = 13;
 
 impl Order {
@@ -112,10 +113,10 @@ pub(super) fn axis(name: &str) -> usize {
 
 /// Which order the motion itself speaks for, and how; or what speaks for neither.
 fn plausible(angles: &Array) -> Result<(Order, String), String> {
-    if (0..angles.frames()).all(|i| angles.frame(i)[ARMS..].iter().all(|a| a.abs() < 1e-6)) {
+    if (0..angles.frames()).all(|i| angles.frame(i)[ARMS..].iter().all(|a| a.abs() < NOTHING)) {
         return Ok((
             Order::Wrists,
-            "arms at zero, the same in either order".into(),
+            "arms at zero within 1°, the same in either order".into(),
         ));
     }
     let [own, other] = Order::BOTH.map(|order| order.beyond(angles));

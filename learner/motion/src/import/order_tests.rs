@@ -146,7 +146,11 @@ fn what_could_be_either_is_asked_for() {
     let message = told(&frames(Order::Wrists, 1, &raised), Said::User(Order::Waist)).unwrap_err();
     assert!(message.contains("0.48 rad beyond"), "{message}");
     let (_, _, zero) = told(
-        &frames(Order::Waist, 1, &[("left_knee", 0.4)]),
+        &frames(
+            Order::Waist,
+            1,
+            &[("left_knee", 0.4), ("left_elbow", 0.015)],
+        ),
         Said::Nothing,
     )
     .unwrap();
