@@ -94,6 +94,8 @@ impl Alone {
         let mut config = run::Config::read(&preset).expect("the smoke preset");
         config.put("fleet.actors", actors, "the test");
         config.put("run.iterations", 0, "the test");
+        // `ampco train` writes every value out; this one a learner reads without its section's owner.
+        config.put("task.termination.time_out.steps", 1000, "the test");
         config
             .write(&folder.config_path(), "test")
             .expect("written");
