@@ -4,8 +4,9 @@
 //! function of its configuration and of the reports in their order, so that observing the recorded ones anew gives the
 //! state, bit by bit, in which an uninterrupted scheduler would be.
 
-use ampco::{ConfigError, Report, Schedule, ScheduleConfig};
+use ampco::{Report, Schedule, ScheduleConfig};
 use serde::Deserialize;
+use vocabulary::Invalid;
 
 /// The fields of a metrics line that decisions depend on; a number that was not finite is `null` there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
@@ -38,7 +39,7 @@ pub(crate) fn rebuild(
     config: &ScheduleConfig,
     records: &[Record],
     before: u64,
-) -> Result<Schedule, ConfigError> {
+) -> Result<Schedule, Invalid> {
     let mut lasting: Vec<Report> = Vec::with_capacity(records.len());
     for record in records.iter().filter(|record| record.iteration < before) {
         while lasting

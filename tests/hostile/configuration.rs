@@ -9,6 +9,7 @@ use run::{Config, ConfigError, FleetConfig, RunConfig};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sim::{RandomizationConfig, TaskConfig};
+use vocabulary::Checked;
 
 use crate::damage::{blows, damaged};
 use crate::{always, assert_clear};
@@ -33,14 +34,13 @@ fn whole() -> String {
 #[expect(clippy::result_large_err, reason = "one error per input, at most")]
 fn read(config: &Config) -> Result<(), ConfigError> {
     #[expect(clippy::result_large_err, reason = "as above")]
-    fn section<T, E>(
+    fn section<T>(
         config: &Config,
         name: &str,
-        validate: fn(&T) -> Result<(), E>,
+        validate: fn(&T) -> Checked,
     ) -> Result<(), ConfigError>
     where
         T: DeserializeOwned + Default + Serialize,
-        E: std::fmt::Display,
     {
         let section = config.checked(name, validate)?;
         // What was accepted can be written out again.

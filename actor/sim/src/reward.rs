@@ -10,7 +10,7 @@ pub mod track;
 use crate::moment::Moment;
 use crate::terms::{Sums, table};
 use track::Track;
-use vocabulary::{Checked, Invalid, Ramp, invalid};
+use vocabulary::{Checked, Invalid};
 
 table! {
     /// `[task.reward]`: the terms, each with its weight. One that is not listed, or weighs nothing, does not exist.
@@ -35,16 +35,21 @@ impl RewardConfig {
         paid / weights
     }
 
-    /// Refuses a table that pays for nothing, at any time.
+    /// Refuses a table that at some time pays for nothing. Between the samples at which a weight begins to move or has
+    /// arrived, the sum is a straight line, and no weight is below 0; samples are whole.
     pub(crate) fn pays(&self) -> Checked {
-        let lasts = |weight: &Ramp<f32>| weight.check("weight", invalid::positive).is_ok();
-        if self.weights().any(|(_, weight)| lasts(weight)) {
+        let turns = self.weights().filter_map(|(_, weight)| weight.samples());
+        let moments = turns
+            .flatten()
+            .flat_map(|turn| [turn.floor(), turn.floor() + 1.0]);
+        let sum = |samples| -> f32 { self.weights().map(|(_, weight)| weight.at(samples)).sum() };
+        if moments.chain([0.0]).all(|samples| sum(samples) > 0.0) {
             return Ok(());
         }
         Err(Invalid::new(
             "reward",
             "no term",
-            "give at least one term a weight above 0 from beginning to end, such as reward.track.weight = 1",
+            "give at every time at least one term a weight above 0, such as reward.track.weight = 1",
         ))
     }
 }

@@ -3,7 +3,6 @@
 //! Separate from `train` because this is where every section meets its owner: each is read and
 //! checked strictly before anything is started, so that a mistake costs a second and not an hour.
 
-use std::fmt::Display;
 use std::path::Path;
 use std::thread;
 
@@ -16,6 +15,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sim::{RandomizationConfig, TaskConfig};
 use toml::Value;
+use vocabulary::Checked;
 
 /// Every section there is.
 const SECTIONS: [&str; 10] = [
@@ -105,10 +105,9 @@ pub(crate) fn difference(theirs: &Config, ours: &Config) -> Option<(String, Stri
 }
 
 /// Reads a section, has it checked, and writes its defaults out.
-fn settle<T, E>(config: &mut Config, name: &str, validate: fn(&T) -> Result<(), E>) -> Result<T>
+fn settle<T>(config: &mut Config, name: &str, validate: fn(&T) -> Checked) -> Result<T>
 where
     T: DeserializeOwned + Default + Serialize,
-    E: Display,
 {
     let section = config.checked(name, validate)?;
     config.resolve(name, &section);

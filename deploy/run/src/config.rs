@@ -11,13 +11,16 @@ use std::path::Path;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
+use vocabulary::Checked;
 
 use crate::{assignment, nearest, replace};
 
+mod complaint;
 mod error;
 mod moved;
 mod tables;
 
+use complaint::{misspelt_path, quoted_names};
 pub use error::ConfigError;
 pub use moved::moved;
 use tables::{collect, mark, merge_tables};
@@ -174,32 +177,26 @@ impl Config {
     }
 
     /// One section that its owner has also checked: [`Config::section`], then `validate`.
-    pub fn checked<T, E>(
+    pub fn checked<T>(
         &self,
         name: &str,
-        validate: impl FnOnce(&T) -> Result<(), E>,
+        validate: impl FnOnce(&T) -> Checked,
     ) -> Result<T, ConfigError>
     where
         T: DeserializeOwned + Default,
-        E: Display,
     {
         let section = self.section(name)?;
-        validate(&section).map_err(|problem| self.refuse(name, problem))?;
+        validate(&section).map_err(|invalid| ConfigError::Refused {
+            origin: self.origin_of_value(name, &invalid.path),
+            section: name.to_owned(),
+            problem: invalid.to_string(),
+        })?;
         Ok(section)
     }
 
-    /// The error for a section that its owner refuses; the origin is that of the key it mentions.
+    /// The error for a section that cannot be used as a whole; the origin is that of a key that is mentioned.
     pub fn refuse(&self, section: &str, problem: impl Display) -> ConfigError {
         let problem = problem.to_string();
-        if let Some((path, _)) = problem.split_once(" = ")
-            && let Some(origin) = self.origin(&format!("{section}.{path}"))
-        {
-            return ConfigError::Refused {
-                origin: origin.to_owned(),
-                section: section.to_owned(),
-                problem,
-            };
-        }
         let words: Vec<&str> = problem
             .split(|c: char| !(c.is_alphanumeric() || c == '_'))
             .collect();
@@ -265,6 +262,8 @@ impl Config {
         let problem = if message.starts_with("unknown variant") && !names.is_empty() {
             let remedy = nearest::remedy(names[0], &names[1..]);
             format!("unknown choice `{}`; {remedy}", names[0])
+        } else if message.starts_with("missing field") {
+            format!("{message}; give it as well")
         } else {
             message.to_owned()
         };
@@ -283,6 +282,19 @@ impl Config {
             key.replace('[', ".").replace(']', "")
         ));
         found.map_or_else(|| self.origin_of_section(section), str::to_owned)
+    }
+
+    /// The origin of a value, of an entry of a list, or of anything inside a table.
+    fn origin_of_value(&self, section: &str, path: &str) -> String {
+        let path = path.split('[').next().unwrap_or(path);
+        let whole = format!("{section}.{path}");
+        let inside = format!("{whole}.");
+        let mut given = self.origins.iter();
+        let found = given.find(|(given, _)| **given == whole || given.starts_with(&inside));
+        found.map_or_else(
+            || self.origin_of_section(section),
+            |(_, origin)| origin.clone(),
+        )
     }
 
     /// The origin of anything given in the section: right when there is one file, honest otherwise.
@@ -331,21 +343,5 @@ impl Config {
                 self.origins.insert(path.to_owned(), origin.to_owned());
             }
         }
-    }
-}
-
-/// The names between backticks: serde lists an unknown field and then the known ones.
-fn quoted_names(message: &str) -> Vec<&str> {
-    message.split('`').skip(1).step_by(2).collect()
-}
-
-/// The path reported for an unknown field may or may not end in the field itself.
-fn misspelt_path(path: &str, field: &str) -> String {
-    if path.is_empty() || path == field {
-        field.to_owned()
-    } else if path.ends_with(&format!(".{field}")) {
-        path.to_owned()
-    } else {
-        format!("{}.{field}", path.trim_end_matches(".?"))
     }
 }

@@ -4,6 +4,8 @@
 //! meanings and defaults that learner, actors and command line share.
 
 use serde::{Deserialize, Serialize};
+use vocabulary::Checked;
+use vocabulary::invalid::{require, within};
 
 /// When actors collect.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -113,30 +115,33 @@ impl Default for FleetConfig {
 }
 
 impl RunConfig {
-    /// Refuses values out of range, naming field, value and remedy.
-    pub fn validate(&self) -> Result<(), String> {
-        if i64::try_from(self.seed).is_err() {
-            return Err(format!(
-                "seed = {} is too large; use at most 2^63 - 1",
-                self.seed
-            ));
-        }
-        if !(self.minutes.is_finite() && self.minutes >= 0.0) {
-            let given = self.minutes;
-            return Err(format!(
-                "minutes = {given} is not a time; use 0 for no limit, or more"
-            ));
-        }
-        if self.checkpoint_every == 0 {
-            return Err("checkpoint_every = 0 is out of range; use 1 or more".to_owned());
-        }
-        if self.keep_checkpoints < 2 {
-            // With one, a checkpoint damaged on the disk would be the only one.
-            let given = self.keep_checkpoints;
-            return Err(format!(
-                "keep_checkpoints = {given} is out of range; use 2 or more"
-            ));
-        }
+    /// Refuses the first value out of range.
+    pub fn validate(&self) -> Checked {
+        require(
+            i64::try_from(self.seed).is_ok(),
+            "seed",
+            self.seed,
+            "use at most 2^63 - 1",
+        )?;
+        require(
+            self.minutes.is_finite() && self.minutes >= 0.0,
+            "minutes",
+            self.minutes,
+            "use 0 for no limit, or more",
+        )?;
+        require(
+            self.checkpoint_every > 0,
+            "checkpoint_every",
+            self.checkpoint_every,
+            "use 1 or more",
+        )?;
+        // With one, a checkpoint damaged on the disk would be the only one.
+        require(
+            self.keep_checkpoints >= 2,
+            "keep_checkpoints",
+            self.keep_checkpoints,
+            "use 2 or more",
+        )?;
         let deadlines = &self.deadlines;
         for (name, seconds) in [
             ("rollout_seconds", deadlines.rollout_seconds),
@@ -144,39 +149,35 @@ impl RunConfig {
             ("send_seconds", deadlines.send_seconds),
             ("stop_seconds", deadlines.stop_seconds),
         ] {
-            if !(seconds > 0.0 && seconds <= 86_400.0) {
-                return Err(format!(
-                    "deadlines.{name} = {seconds} is out of range; use more than 0 and at most a day (86400)"
-                ));
-            }
+            let holds = seconds > 0.0 && seconds <= 86_400.0;
+            let remedy = "use more than 0 and at most a day (86400)";
+            within("deadlines", require(holds, name, seconds, remedy))?;
         }
         Ok(())
     }
 }
 
 impl FleetConfig {
-    /// Refuses values out of range, naming field, value and remedy.
-    pub fn validate(&self) -> Result<(), String> {
+    /// Refuses the first value out of range.
+    pub fn validate(&self) -> Checked {
         for (name, value, most) in [
             ("environments", self.environments, 1 << 20),
             ("steps", self.steps, 1 << 12),
         ] {
-            if value == 0 || value > most {
-                return Err(format!("{name} = {value} is out of range; use 1 to {most}"));
-            }
+            let holds = (1..=most).contains(&value);
+            require(holds, name, value, format!("use 1 to {most}"))?;
         }
         // The streams are opened for 64 publishers; more could never join.
-        if self.actors > 64 {
-            let given = self.actors;
-            return Err(format!("actors = {given} is out of range; use at most 64"));
-        }
-        if self.actors > self.environments {
-            return Err(format!(
-                "actors = {} is more than environments = {}; each actor simulates at least one",
-                self.actors, self.environments
-            ));
-        }
-        Ok(())
+        require(self.actors <= 64, "actors", self.actors, "use at most 64")?;
+        require(
+            self.actors <= self.environments,
+            "actors",
+            self.actors,
+            format!(
+                "use at most environments, {}; each actor simulates at least one",
+                self.environments
+            ),
+        )
     }
 
     /// Environments of one actor: an even share, rounded up so that all actors send one shape.
@@ -202,14 +203,17 @@ mod tests {
             ..RunConfig::default()
         };
         let problem = run.validate().unwrap_err();
-        assert!(problem.contains("keep_checkpoints = 1") && problem.contains("2 or more"));
+        assert_eq!(
+            problem.to_string(),
+            "keep_checkpoints = 1 is not usable: use 2 or more"
+        );
 
         let mut run = RunConfig::default();
         run.deadlines.stop_seconds = f64::NAN;
-        assert!(
-            run.validate()
-                .unwrap_err()
-                .contains("deadlines.stop_seconds = NaN")
+        let problem = run.validate().unwrap_err();
+        assert_eq!(
+            (&*problem.path, &*problem.value),
+            ("deadlines.stop_seconds", "NaN")
         );
 
         let fleet = FleetConfig {
@@ -217,7 +221,11 @@ mod tests {
             actors: 3,
             ..FleetConfig::default()
         };
-        assert!(fleet.validate().unwrap_err().contains("actors = 3"));
+        let problem = fleet.validate().unwrap_err().to_string();
+        assert!(
+            problem.starts_with("actors = 3") && problem.contains("environments, 2"),
+            "{problem}"
+        );
     }
 
     #[test]

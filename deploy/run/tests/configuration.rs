@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use run::{Config, ConfigError, FleetConfig, Mode, RunConfig};
+use vocabulary::Checked;
+use vocabulary::invalid::require;
 
 /// A section with what real ones have: a number, a choice, a table, a list, an option.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,14 +47,8 @@ impl Default for Walk {
 }
 
 impl Walk {
-    fn validate(&self) -> Result<(), String> {
-        if self.speed > 2.0 {
-            return Err(format!(
-                "speed = {} is out of range; use at most 2",
-                self.speed
-            ));
-        }
-        Ok(())
+    fn validate(&self) -> Checked {
+        require(self.speed <= 2.0, "speed", self.speed, "use at most 2")
     }
 }
 
@@ -165,6 +161,19 @@ fn an_owners_refusal_names_where_the_key_was_given() {
         message.starts_with("--set walk.speed=3: [walk] speed = 3"),
         "{message}"
     );
+    // An entry of a list, and something inside a table, are where the list and the table were given.
+    config.set("walk.clips=[]").unwrap();
+    for (path, origin) in [
+        ("clips[0].lower", "--set walk.clips=[]"),
+        ("steps", "preset walk"),
+    ] {
+        let refused = |_: &Walk| require(false, path, 1, "another");
+        let message = config.checked("walk", refused).unwrap_err().to_string();
+        assert!(
+            message.starts_with(&format!("{origin}: [walk] {path} = 1")),
+            "{message}"
+        );
+    }
 }
 
 #[test]

@@ -4,9 +4,9 @@
 
 mod gaits;
 
-use crate::error::MotionError;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
+use vocabulary::{Checked, Invalid};
 
 /// Reference motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -153,7 +153,7 @@ impl MotionConfig {
     ///
     /// # Errors
     /// The first field that is not, its value and the remedy.
-    pub fn validate(&self) -> Result<(), MotionError> {
+    pub fn validate(&self) -> Checked {
         if self.clips.is_empty() {
             let remedy = "name at least one clip, for example { gait = \"walk\", speed = 0.8 }";
             return Err(wrong("clips".into(), "[]", remedy));
@@ -171,7 +171,7 @@ impl ClipConfig {
         self.file.is_none() && self.folder.is_none()
     }
 
-    fn validate(&self, index: usize) -> Result<(), MotionError> {
+    fn validate(&self, index: usize) -> Checked {
         let field = |name: &str| format!("clips[{index}].{name}");
         if !(self.weight.is_finite() && self.weight > 0.0 && self.weight <= 1e6) {
             let remedy = "write a number above 0, at most 1000000; remove the clip to leave it out";
@@ -198,7 +198,7 @@ impl ClipConfig {
         }
     }
 
-    fn validate_file(&self, field: &dyn Fn(&str) -> String) -> Result<(), MotionError> {
+    fn validate_file(&self, field: &dyn Fn(&str) -> String) -> Checked {
         for (name, given) in [
             ("speed", self.speed),
             ("lateral", self.lateral),
@@ -220,9 +220,9 @@ impl ClipConfig {
     }
 }
 
-pub(crate) fn wrong(field: String, value: impl ToString, remedy: &str) -> MotionError {
-    MotionError::Config {
-        field,
+pub(crate) fn wrong(path: String, value: impl ToString, remedy: &str) -> Invalid {
+    Invalid {
+        path,
         value: value.to_string(),
         remedy: remedy.into(),
     }

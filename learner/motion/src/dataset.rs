@@ -83,7 +83,7 @@ impl Dataset {
     /// # Errors
     /// As [`Self::load`].
     pub fn read(config: &MotionConfig, base_dir: &Path) -> Result<Vec<Reference>, MotionError> {
-        config.validate()?;
+        config.validate().map_err(MotionError::Config)?;
         let mut clips = Vec::new();
         for (index, source) in config.clips.iter().enumerate() {
             clips.extend(source::load_clips(source, index, base_dir)?);

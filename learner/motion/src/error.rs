@@ -10,15 +10,8 @@ use wording::said;
 #[derive(Debug, thiserror::Error)]
 pub enum MotionError {
     /// A field of the `[motion]` section has an unusable value.
-    #[error("motion.{field} = {}: {remedy}", said(value))]
-    Config {
-        /// Path of the field, for example `clips[2].speed`.
-        field: String,
-        /// The value as given.
-        value: String,
-        /// What to write instead.
-        remedy: String,
-    },
+    #[error("motion.{0}")]
+    Config(vocabulary::Invalid),
     /// A file could not be read.
     #[error("cannot read motion file {}; check motion.clips[].file (relative paths start at the folder of the configuration)", path.display())]
     Read {

@@ -64,6 +64,14 @@ impl<T: Copy> Ramp<T> {
         }
     }
 
+    /// The samples between which it moves, if it does.
+    pub fn samples(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Constant(_) => None,
+            Self::Moving(way) => Some(way.samples),
+        }
+    }
+
     /// Whether it moves at all.
     pub fn moves(&self) -> bool {
         matches!(self, Self::Moving(_))

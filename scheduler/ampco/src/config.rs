@@ -1,6 +1,8 @@
 //! The `[scheduler]` section of a run's configuration: the paper's values by default, its open places as knobs.
 
 use serde::{Deserialize, Serialize};
+use vocabulary::Checked;
+use vocabulary::invalid::require;
 
 use crate::Method;
 
@@ -97,24 +99,12 @@ pub enum BoundsSource {
     Window,
 }
 
-/// A value that cannot be used, and what to write instead.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{field} = {value}: {remedy}")]
-pub struct ConfigError {
-    /// Field of [`ScheduleConfig`].
-    pub field: &'static str,
-    /// The value found.
-    pub value: String,
-    /// What is allowed, and the paper's choice.
-    pub remedy: &'static str,
-}
-
 /// Largest window accepted: its memory is taken at once, about 50 bytes an iteration.
 const LARGEST_WINDOW: usize = 10_000_000;
 
 impl ScheduleConfig {
     /// Refuses the first value that the mathematics cannot take.
-    pub fn validate(&self) -> Result<(), ConfigError> {
+    pub fn validate(&self) -> Checked {
         let strictly_inside = |x: f64| x > 0.0 && x < 1.0;
         require(
             (2..=LARGEST_WINDOW).contains(&self.window),
@@ -178,23 +168,6 @@ impl ScheduleConfig {
             | Method::AmpcoWithoutAig
             | Method::AmpcoWithoutRoger => Ok(()),
         }
-    }
-}
-
-fn require(
-    holds: bool,
-    field: &'static str,
-    value: impl ToString,
-    remedy: &'static str,
-) -> Result<(), ConfigError> {
-    if holds {
-        Ok(())
-    } else {
-        Err(ConfigError {
-            field,
-            value: value.to_string(),
-            remedy,
-        })
     }
 }
 

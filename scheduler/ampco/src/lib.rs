@@ -53,7 +53,7 @@ mod weights;
 pub mod window;
 
 pub use bounds::Bounds;
-pub use config::{ArmKind, BoundsSource, CeilingKind, ConfigError, Granularity, ScheduleConfig};
+pub use config::{ArmKind, BoundsSource, CeilingKind, Granularity, ScheduleConfig};
 pub use decision::{Decision, Phase, Switch, Warning};
 pub use method::{AfterConvergence, Method};
 pub use report::{Report, ReportError};

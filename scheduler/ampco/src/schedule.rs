@@ -4,9 +4,10 @@ use crate::arming::{Arm, Arming};
 use crate::breakout::{Detector, Observation};
 use crate::weighting::guidance::Ceiling;
 use crate::{
-    AfterConvergence, Bounds, BoundsSource, ConfigError, Decision, Granularity, Phase, Report,
-    ReportError, Rule, ScheduleConfig, Switch,
+    AfterConvergence, Bounds, BoundsSource, Decision, Granularity, Phase, Report, ReportError,
+    Rule, ScheduleConfig, Switch,
 };
+use vocabulary::Invalid;
 
 /// Everything that the decisions of a run depend on.
 #[derive(Clone, Debug)]
@@ -22,7 +23,7 @@ pub struct Schedule {
 
 impl Schedule {
     /// A schedule that has seen nothing; refuses a configuration that the mathematics cannot take.
-    pub fn new(config: ScheduleConfig) -> Result<Self, ConfigError> {
+    pub fn new(config: ScheduleConfig) -> Result<Self, Invalid> {
         config.validate()?;
         Ok(Self {
             phase: Phase::One,

@@ -3,9 +3,9 @@
 //! Separate because each gait has its own ranges, and a velocity has three parts.
 
 use super::{ClipConfig, Gait, wrong};
-use crate::error::MotionError;
 use crate::gait::{LATERAL_SPEEDS, RUNNING_SPEEDS, Velocity, WALKING_SPEEDS, YAW_RATES};
 use std::ops::RangeInclusive;
+use vocabulary::Checked;
 
 impl ClipConfig {
     /// The velocity that a built-in gait is asked for.
@@ -17,11 +17,7 @@ impl ClipConfig {
         }
     }
 
-    pub(super) fn validate_gait(
-        &self,
-        gait: Gait,
-        field: &dyn Fn(&str) -> String,
-    ) -> Result<(), MotionError> {
+    pub(super) fn validate_gait(&self, gait: Gait, field: &dyn Fn(&str) -> String) -> Checked {
         for (name, given) in [
             ("fps", self.fps.is_some()),
             ("quaternion", self.quaternion.is_some()),
@@ -53,7 +49,7 @@ impl ClipConfig {
         )
     }
 
-    fn validate_standing(&self, field: &dyn Fn(&str) -> String) -> Result<(), MotionError> {
+    fn validate_standing(&self, field: &dyn Fn(&str) -> String) -> Checked {
         for (name, given) in [
             ("speed", self.speed),
             ("lateral", self.lateral),
@@ -67,12 +63,7 @@ impl ClipConfig {
     }
 }
 
-fn within(
-    field: String,
-    value: Option<f64>,
-    range: RangeInclusive<f64>,
-    unit: &str,
-) -> Result<(), MotionError> {
+fn within(field: String, value: Option<f64>, range: RangeInclusive<f64>, unit: &str) -> Checked {
     if value.is_some_and(|value| range.contains(&value)) {
         return Ok(());
     }

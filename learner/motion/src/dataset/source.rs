@@ -50,8 +50,9 @@ pub(super) fn load_clips(
             };
             let impossible =
                 "no pose of the legs makes this gait; lower lateral, yaw_rate or speed";
-            let clip =
-                made.ok_or_else(|| wrong(format!("clips[{index}]"), velocity, impossible))?;
+            let none =
+                || MotionError::Config(wrong(format!("clips[{index}]"), velocity, impossible));
+            let clip = made.ok_or_else(none)?;
             vec![Reference {
                 clip,
                 account: None,
@@ -63,11 +64,9 @@ pub(super) fn load_clips(
             .map(|path| read(path, &options))
             .collect::<Result<_, _>>()?,
         (None, None, None) => {
-            return Err(wrong(
-                format!("clips[{index}]"),
-                "{}",
-                "give gait, file or folder",
-            ));
+            let remedy = "give gait, file or folder";
+            let invalid = wrong(format!("clips[{index}]"), "{}", remedy);
+            return Err(MotionError::Config(invalid));
         }
     };
     let seconds: f64 = clips.iter().map(|reference| reference.clip.seconds()).sum();

@@ -87,10 +87,10 @@ fn bad_values_are_named_with_a_remedy() {
             "method.amp_roger.lower",
         ),
     ] {
-        assert_eq!(refused(text).field, field, "{text}");
+        assert_eq!(refused(text).path, field, "{text}");
     }
     assert_eq!(
         refused("percentile = 95.0").to_string(),
-        "percentile = 95: write it as a fraction between 0 and 1; the paper's 95th percentile is 0.95"
+        "percentile = 95.0 is not usable: write it as a fraction between 0 and 1; the paper's 95th percentile is 0.95"
     );
 }

@@ -380,5 +380,5 @@ fn a_bad_configuration_makes_no_schedule() {
         ..Default::default()
     })
     .unwrap_err();
-    assert_eq!((refused.field, refused.value.as_str()), ("window", "1"));
+    assert_eq!((&*refused.path, &*refused.value), ("window", "1"));
 }
