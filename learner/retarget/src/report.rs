@@ -87,6 +87,7 @@ pub struct Report {
     /// Most that the pelvis was lowered because a leg did not reach, m.
     pub lowered: f64,
     /// Farthest that a standing foot was kept from its place because its leg did not reach it, m.
+    #[serde(default)]
     pub unreached: f64,
     /// Farthest that the pelvis was moved over the ground so that knees bend as the human's, m.
     #[serde(default)]
