@@ -18,11 +18,11 @@ use clap::{Args, Subcommand};
 
 const EXAMPLES: &str = "\
 Examples:
-  ampco motions import CMU/02 --out walks              CMU's .amc with the .asf beside them
-  ampco motions import LAFAN1/*.bvh --out lafan        human captures, retargeted
-  ampco motions import unitree/*.csv --fps 30 --out g1 Unitree's tables of the G1
-  ampco motions inspect walks --plots plots            figures and SVG plots of each clip
-  ampco motions check walks                            is it balanced over speeds, is it sound?
+  ampco motions import CMU/02 --out walks               CMU's .amc with the .asf beside them
+  ampco motions import LAFAN1/*.bvh --out lafan         human captures, retargeted
+  ampco motions import unitree/*.csv --fps 30 --out g1  Unitree's tables of the G1
+  ampco motions inspect walks --plots plots             figures and SVG plots of each clip
+  ampco motions check walks                             is it balanced over speeds, is it sound?
   ampco train --set 'motion.clips=[{folder=\"walks\"}]'   train on it
 
 Formats are told by content: AMASS and SMPL-X .npz, BVH, ASF/AMC, tables of the G1 (.csv),

@@ -251,7 +251,7 @@ mod tests {
             std::fs::write(run.config_path(), "[run]\niterations = 1").unwrap();
             let draft = Judgement::path(&run).with_extension("draft");
             std::fs::create_dir_all(draft.parent().unwrap()).unwrap();
-            let row = json!([{ "command": [0.5, 0.0, 0.0], "survival": 1.0, "rmse": 0.1, "energy_j": 9.0, "gait": "walk" }]);
+            let row = json!([{ "command": [0.5, 0.0, 0.0], "survival": 1.0, "rmse": 0.1, "rmse_yaw_rate": 0.2, "energy_j": 9.0, "gait": "walk" }]);
             std::fs::write(&draft, row.to_string()).unwrap();
             let found = file(3 + seed, "[1]").evaluate.unwrap();
             Judgement::keep(&run, &found, &draft).unwrap();
