@@ -107,10 +107,12 @@ fn what_a_resume_changes_counts_and_what_it_may_not_change_is_refused() {
     let mut damaged = bytes(&newest);
     damaged[100] ^= 1;
     fs::write(&newest, damaged).expect("written");
+    let page = runs.path().join("page.html");
+    let page = page.to_str().expect("text");
     for (what, arguments) in [
         ("evaluate", &["--episodes", "1"][..]),
         ("export", &["--out", "/nowhere"]),
-        ("play", &["--html", "/nowhere/page.html"]),
+        ("play", &["--html", page]),
     ] {
         let (success, said) = ampco(&runs, what, "rate", arguments);
         assert!(

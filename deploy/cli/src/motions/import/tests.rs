@@ -99,10 +99,7 @@ fn a_folder_that_is_imported_into_itself_does_not_grow() {
     fs::write(folder.path().join("in/b.csv"), unitree()).unwrap();
     for _ in 0..2 {
         let message = import(&[root, "--fps", "30", "--out", root]).unwrap_err();
-        assert!(
-            message.contains("1 of 2 files not imported"),
-            "{message}"
-        );
+        assert!(message.contains("1 of 2 files not imported"), "{message}");
         let mut names: Vec<String> = fs::read_dir(root)
             .unwrap()
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())
