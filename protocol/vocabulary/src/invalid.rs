@@ -29,7 +29,7 @@ impl Invalid {
         }
     }
 
-    /// The same, told by who holds the table that it stands in.
+    /// The same, with its path from outside the table that it stands in.
     #[must_use]
     pub fn inside(self, table: &str) -> Self {
         Self {

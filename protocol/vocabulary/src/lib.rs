@@ -1,7 +1,7 @@
 //! What simulation, learning and judging say alike, said once.
 //!
 //! Separate, and below all of them, because none may import another: a number that one writes into a rollout
-//! has to mean the same to whoever reads it.
+//! has to mean the same where it is read.
 //!
 //! | subject | file |
 //! | --- | --- |
