@@ -33,7 +33,7 @@ pub(crate) struct Measures {
 }
 
 impl Measures {
-    /// Of a batch, with the mean length of its episodes that ended (steps).
+    /// Of a batch, with the mean length (steps) of its episodes that ended, if robots fell in them.
     pub(crate) fn of(batch: &Batch, episode_length: Option<f64>) -> Self {
         let mut measures = Self::of_those(batch, is_along);
         if measures.steps == 0.0 {

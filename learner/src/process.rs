@@ -8,6 +8,7 @@ use anyhow::{Context, Result};
 use protocol::{Shutdown, WeightsOrder};
 use run::{Folder, Lock};
 use tracing::{error, info, warn};
+use vocabulary::Cause;
 
 use crate::config::LearnerConfig;
 use crate::cores::Cores;
@@ -157,7 +158,11 @@ impl Loop {
         match learned {
             Ok(report) => {
                 self.refusals = 0;
-                let measures = Measures::of(batch, report.episode_length);
+                let ended = &report.terminations;
+                // Episodes that mostly ended otherwise say nothing of how long robots stay up.
+                let mostly_falls = 2 * ended.by(Cause::Fall) > ended.total();
+                let fell_after = report.episode_length.filter(|_| mostly_falls);
+                let measures = Measures::of(batch, fell_after);
                 self.watch.take(state.iteration, &measures);
                 let idle_share = self.cores.idle_share();
                 let mut record = self.record(lines, state, &measures, guide, report, span);

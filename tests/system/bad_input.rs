@@ -54,6 +54,25 @@ fn an_unknown_key_of_a_preset_file_names_the_file() {
 }
 
 #[test]
+fn a_deviation_that_no_actor_could_draw_with_is_refused_before_anything_starts() {
+    for key in ["sigma", "waist_factor"] {
+        let said = refused(&["--set", &format!("exploration.{key}=1e-45")]);
+        assert_says(&said, &["--set", key, "1e-6"]);
+    }
+}
+
+#[test]
+fn a_seed_of_a_study_is_not_set_aside_in_silence() {
+    let mut command = Command::new(program("ampco"));
+    let file = crate::harness::repository().join("deploy/studies/smoke.toml");
+    command.args(["study", "run", "--dry-run", "--set", "seed=4"]);
+    command.arg(file);
+    let (success, _, said) = finish(command);
+    assert!(!success);
+    assert_says(&said, &["seed=4", "--seeds"]);
+}
+
+#[test]
 fn a_policy_to_begin_with_has_to_be_there() {
     assert_says(&refused(&["--from", "nobody"]), &["nobody"]);
     let shipped = crate::harness::repository().join("deploy/policies/walk");

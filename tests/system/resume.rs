@@ -63,7 +63,7 @@ fn what_a_resume_changes_counts_and_what_it_may_not_change_is_refused() {
     let (success, said) = go_on(&["--iterations", "3", "--set", "ppo.learning_rate=2e-5"]);
     assert!(success, "{said}");
     assert!(
-        said.contains("ppo.learning_rate: 0.0003 → 0.00002"),
+        said.contains("from iteration 3 on: ppo.learning_rate: 0.0003 → 0.00002"),
         "{said}"
     );
 
@@ -101,6 +101,18 @@ fn what_a_resume_changes_counts_and_what_it_may_not_change_is_refused() {
     let (success, said) = go_on(&["--iterations", "5"]);
     assert!(!success && said.contains("[16, 16] → [32, 32]"), "{said}");
     fs::write(run.join("config.toml"), &text).expect("written");
+
+    // What an actor added to the newest checkpoint is damaged: the one before it is gone on from, and that is said.
+    let robots = run.join("checkpoints/00000004/actor-0.bin");
+    let whole = bytes(&robots);
+    fs::write(&robots, &whole[..whole.len() / 2]).expect("written");
+    let (success, said) = go_on(&["--iterations", "4"]);
+    assert!(
+        success
+            && said.contains("checkpoint 4 is passed over (actor-0.bin")
+            && said.contains("from iteration 3"),
+        "{said}"
+    );
 
     // The newest checkpoint is damaged: everybody names the one before it, which is good.
     let newest = run.join("checkpoints/00000004/policy.bin");

@@ -134,6 +134,12 @@ impl RunStudy {
         }
         let mut overrides = Config::parse(&toml::to_string(&file.overrides)?, &path.to_string())?;
         for assignment in &self.set {
+            let key = assignment.split('=').next().unwrap_or_default().trim();
+            if ["seed", "run.seed"].contains(&key) {
+                return Err(usage(format!(
+                    "--set {assignment}: every run of a study has its own seed; give --seeds"
+                )));
+            }
             overrides.set(assignment)?;
         }
         file.overrides =

@@ -268,7 +268,7 @@ impl Config {
             message.to_owned()
         };
         ConfigError::Value {
-            origin: self.origin_of(section, key),
+            origin: self.origin_of_value(section, key),
             section: section.to_owned(),
             key: if key.is_empty() { section } else { key }.to_owned(),
             value: self.value_text(section, key),

@@ -299,3 +299,15 @@ fn a_value_of_megabytes_is_refused_in_a_line() {
     let mut given = config("");
     assert_short(&given.set(&format!("{long}.=1")).unwrap_err().to_string());
 }
+
+#[test]
+fn a_table_over_a_word_is_blamed_on_who_gave_it() {
+    let mut config = Config::parse("[walk]\nmethod = \"plain\"", "a file").unwrap();
+    config.set("walk.method.plain.alpha=0.5").unwrap();
+    let error = config.section::<Walk>("walk").unwrap_err().to_string();
+    assert!(
+        error.contains("--set walk.method.plain.alpha=0.5"),
+        "{error}"
+    );
+    assert!(!error.contains("a file"), "{error}");
+}

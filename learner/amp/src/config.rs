@@ -64,6 +64,12 @@ impl Check {
         self.that(holds, field, value, "use a finite number above 0")
     }
 
+    /// For standard deviations of actions and their factors: far below this an actor would have none at all.
+    fn at_least_a_millionth(self, field: &str, value: f32) -> Self {
+        let holds = value.is_finite() && value >= 1e-6;
+        self.that(holds, field, value, "use a finite number from 1e-6 on")
+    }
+
     fn not_negative(self, field: &str, value: f32) -> Self {
         let holds = value >= 0.0 && value.is_finite();
         self.that(holds, field, value, "use a finite number, 0 or above")

@@ -89,6 +89,8 @@ fn configuration(kept: &Kept, learned: &[Print]) -> Result<(Config, String)> {
     let motion: MotionConfig = config.section("motion")?;
     let (built_in, files): (Vec<_>, Vec<_>) =
         motion.clips.into_iter().partition(ClipConfig::is_built_in);
+    // A policy that was shipped before has the hashes alone.
+    let from_files = !files.is_empty() || !learned.is_empty();
     if !files.is_empty() {
         let rest = MotionConfig {
             clips: built_in,
@@ -99,6 +101,8 @@ fn configuration(kept: &Kept, learned: &[Print]) -> Result<(Config, String)> {
             // No clip at all is refused by whoever reads it; without the key the default walks stand in.
             config.remove("motion.clips");
         }
+    }
+    if from_files {
         comment.push_str(
             "\nIt has learned from motion files, which are not part of it; [motion] has the rest.",
         );
@@ -239,6 +243,11 @@ mod tests {
             let leaves =
                 |folder: &Path| Config::read(&folder.join("config.toml")).unwrap().leaves();
             assert_eq!(leaves(&again), leaves(&shipped));
+            let text = std::fs::read_to_string(again.join("config.toml")).unwrap();
+            assert!(
+                text.contains("# It has learned from motion files"),
+                "{text}"
+            );
             assert_eq!(
                 run::motion::read(&again).unwrap(),
                 run::motion::read(&shipped).unwrap()

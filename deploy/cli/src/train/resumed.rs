@@ -19,6 +19,8 @@ pub(super) struct GoingOn {
     iteration: u64,
     /// What changes from here on.
     changes: Vec<Change>,
+    /// Why a newer checkpoint is not gone on from, if there is one.
+    passed_over: Option<String>,
     /// The configuration so far, for a checkpoint of an older program, which has none of its own.
     note: Option<Config>,
 }
@@ -77,7 +79,11 @@ impl Ready {
         let Some(going_on) = &self.going_on else {
             return Ok(());
         };
-        let at = going_on.iteration;
+        if let Some(passed_over) = &going_on.passed_over {
+            say(passed_over);
+        }
+        // What is asked for now counts in the iteration after the checkpoint's.
+        let at = going_on.iteration + 1;
         for change in &going_on.changes {
             say(&format!("from iteration {at} on: {change}"));
         }
@@ -87,7 +93,8 @@ impl Ready {
             ));
         }
         if let Some(before) = &going_on.note {
-            let path = self.folder.checkpoints().path(at).join("config.toml");
+            let at = self.folder.checkpoints().path(going_on.iteration);
+            let path = at.join("config.toml");
             let comment = "The configuration under which this checkpoint was trained.";
             before.write(&path, comment)?;
         }
@@ -144,8 +151,23 @@ fn going_on(
     Ok(GoingOn {
         iteration,
         changes,
+        passed_over: passed_over(folder, iteration)?,
         note,
     })
+}
+
+/// Why a run goes on from this iteration although a newer checkpoint is good by itself: what actors were to add to it is
+/// missing or damaged, and with it the exact continuation.
+fn passed_over(folder: &Folder, iteration: u64) -> Result<Option<String>> {
+    let checkpoints = folder.checkpoints();
+    let newest = checkpoints.open_newest(None)?;
+    Ok((newest.iteration > iteration).then(|| {
+        format!(
+            "checkpoint {} is passed over ({}): the run goes on from iteration {iteration}, and does anew what came after",
+            newest.iteration,
+            checkpoints.lacks(&newest).join("; ")
+        )
+    }))
 }
 
 /// The phase that the metrics tell of an iteration, or of the newest before it.

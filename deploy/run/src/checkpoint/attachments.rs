@@ -32,6 +32,17 @@ impl Checkpoints {
         checkpoint.awaited.iter().all(there)
     }
 
+    /// What a checkpoint lacks of all that others were to attach to it, each with the reason; empty where it is whole.
+    pub fn lacks(&self, checkpoint: &Checkpoint) -> Vec<String> {
+        let problem = |name: &String| match self.attachment(checkpoint.iteration, name) {
+            Ok(Some(_)) => None,
+            Ok(None) => Some(format!("{name} never came")),
+            Err(CheckpointError::Refused { reason, .. }) => Some(format!("{name}: {reason}")),
+            Err(other) => Some(format!("{name}: {other}")),
+        };
+        checkpoint.awaited.iter().filter_map(problem).collect()
+    }
+
     /// The iteration of the newest that is whole, whatever its shape.
     pub fn newest_whole(&self) -> Option<u64> {
         let newest_first = self.list().into_iter().rev();

@@ -6,7 +6,7 @@ use super::Verdict;
 use crate::compare::{Comparison, LEVEL};
 use crate::metric::Metric;
 use crate::paper;
-use crate::results::{Column, Results};
+use crate::results::{Column, Results, State};
 
 /// A run has settled if it converged within this share of its length.
 const SETTLED: f64 = 0.8;
@@ -185,17 +185,28 @@ pub(super) fn too_short(
     None
 }
 
-/// Which of the entries has no finished run.
+/// Which of the entries has no run that counts: none has finished, or those that have are shorter than the window over
+/// which they would be measured.
 pub(super) fn missing(results: &Results, entries: &[&str]) -> Finding {
-    let without = |entry: &&&str| results.measured(entry).next().is_none();
-    let names: Vec<&str> = entries
+    let without: Vec<&str> = entries
         .iter()
-        .filter(without)
-        .map(|entry| paper::label(entry))
+        .copied()
+        .filter(|entry| results.measured(entry).next().is_none())
         .collect();
-    let reason = match names.as_slice() {
+    let finished = |entry: &&str| {
+        let mut runs = results.runs.iter().filter(|run| run.entry == **entry);
+        runs.any(|run| run.state == State::Finished)
+    };
+    let labels: Vec<&str> = without.iter().map(|entry| paper::label(entry)).collect();
+    let reason = match without.as_slice() {
         [] => "no seed that both have finished".to_owned(),
-        names => format!("no finished run of {}", names.join(" and ")),
+        some if some.iter().all(finished) => {
+            format!(
+                "no run of {} is long enough to be measured",
+                labels.join(" or ")
+            )
+        }
+        _ => format!("no finished run of {}", labels.join(" and ")),
     };
     undecided(String::new(), &reason)
 }

@@ -185,9 +185,12 @@ fn variation(results: &Results, others: &[&str]) -> Finding {
 fn convergence(results: &Results) -> Finding {
     let at = |entry| results.spread(entry, Metric::Style, Column::Convergence);
     let (Some(ours), Some(aig), Some(roger)) = (at(AMPCO), at(AIG), at(ROGER)) else {
-        let first = missing(results, &[AMPCO, AIG, ROGER]);
-        return match first.words.contains("no finished run") {
-            true => first,
+        let all = [AMPCO, AIG, ROGER];
+        let lacking = all
+            .iter()
+            .any(|entry| results.measured(entry).next().is_none());
+        return match lacking {
+            true => missing(results, &all),
             false => undecided(String::new(), "some method did not converge in any run"),
         };
     };

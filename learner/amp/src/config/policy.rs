@@ -91,10 +91,10 @@ impl ExplorationConfig {
     /// Refuses the first value that learning cannot work with.
     pub fn validate(&self) -> Checked {
         Check(Ok(()))
-            .ramp("sigma", &self.sigma, Check::positive)
-            .positive("waist_factor", self.waist_factor)
-            .positive("arm_factor", self.arm_factor)
-            .positive("min_sigma", self.min_sigma)
+            .ramp("sigma", &self.sigma, Check::at_least_a_millionth)
+            .at_least_a_millionth("waist_factor", self.waist_factor)
+            .at_least_a_millionth("arm_factor", self.arm_factor)
+            .at_least_a_millionth("min_sigma", self.min_sigma)
             .that(
                 self.max_sigma >= self.min_sigma && self.max_sigma.is_finite(),
                 "max_sigma",

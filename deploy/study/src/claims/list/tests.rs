@@ -37,6 +37,19 @@ fn three_seeds_decide_nothing_and_the_report_says_so() {
 }
 
 #[test]
+fn runs_that_are_too_short_to_be_measured_are_not_called_unfinished() {
+    let mut results = sample::results(&[("ampco", &[1.0, 1.1]), ("amp-0.7", &[2.0, 2.1])]);
+    let of = |results: &Results| verdict(results, "AMP [w = 0.7]").evidence;
+    for run in results.runs.iter_mut().filter(|run| run.entry == "amp-0.7") {
+        run.measured = None;
+    }
+    let short = "no run of AMP [w = 0.7] is long enough to be measured";
+    assert!(of(&results).contains(short), "{}", of(&results));
+    results.runs.retain(|run| run.entry == "ampco");
+    assert!(of(&results).contains("no finished run of AMP [w = 0.7]"));
+}
+
+#[test]
 fn six_seeds_on_one_side_support_or_contradict() {
     let (low, high) = (&LOW[..], &HIGH[..]);
     let results = sample::results(&[("ampco", low), ("amp-0.5", high), ("adamimic", high)]);
