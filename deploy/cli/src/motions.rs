@@ -10,6 +10,7 @@ mod inspect;
 mod mirror;
 mod output;
 mod plots;
+mod report;
 mod synth;
 mod table;
 

@@ -39,6 +39,6 @@ pub use config::{Config, ConfigError};
 pub use events::Events;
 pub use folder::{Folder, FolderError};
 pub use metrics::{Metrics, MetricsError};
-pub use replace::replace_file;
+pub use replace::{remove_drafts, replace_file};
 pub use roles::Lock;
 pub use sections::{Deadlines, FleetConfig, Mode, RunConfig};

@@ -41,7 +41,7 @@ use file::File;
 use g1::JOINTS;
 use human::Joints;
 use nalgebra::{UnitQuaternion, Vector3};
-use retarget::Report;
+use retarget::{Floor, Report};
 use std::path::{Path, PathBuf};
 
 /// What a file does not say, or says wrongly.
@@ -89,6 +89,34 @@ pub struct Imported {
     pub decisions: Vec<String>,
     /// The account of retargeting, if a human was in the file.
     pub retargeting: Option<Report>,
+    /// What the file's motion was like before it was made one that the robot can do.
+    pub source: Source,
+}
+
+/// What import mends in a robot's motion, as the source had it: the clip no longer shows it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Source {
+    /// The joints that were held within limits or speeds.
+    pub jumps: Vec<Jump>,
+    /// How uneven the ground under the feet was, if the motion was put on the ground.
+    pub floor: Option<Floor>,
+}
+
+/// The greatest step of a joint of the source, at 50 Hz.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Jump {
+    /// The joint's name.
+    pub joint: String,
+    /// The frame that the step leads to, counted from 1.
+    pub frame: usize,
+    /// How far the joint turns in that frame, rad.
+    pub angle: f64,
+    /// The same over what its motor can turn.
+    pub times: f64,
+    /// The joint's greatest acceleration anywhere, rad/s².
+    pub acceleration: f64,
+    /// The greatest of those that another as great or greater follows the other way in the next frame, rad/s².
+    pub reversal: f64,
 }
 
 /// A row of a file: place and posture, no velocities yet.
@@ -170,10 +198,12 @@ fn imported(
     };
     let (motion, stated) = read(file, format, options, &mut decisions)?;
     let fps = rate::decide(file, options, stated, &mut decisions)?;
+    let mut source = Source::default();
     let (frames, clip, retargeting) = match motion {
         Motion::Robot(rows, sure) => {
             let rows = oriented(file, rows, sure, fps, options, &mut decisions)?;
-            let clip = resample::clip(file, &rows, fps, options.ground, &mut decisions)?;
+            let clip;
+            (clip, source) = resample::clip(file, &rows, fps, options.ground, &mut decisions)?;
             (rows.len(), clip, None)
         }
         Motion::Finished(rows) => {
@@ -200,6 +230,7 @@ fn imported(
         fps,
         decisions,
         retargeting,
+        source,
     })
 }
 
@@ -220,17 +251,18 @@ fn read(
         Format::Amc => {
             let joints = amc::read(file, options.skeleton.as_deref(), decisions)?;
             // The format has no place for a rate: the user's word contradicts nothing.
-            if options.fps.is_none() {
+            let usual = options.fps.is_none() && rate::in_name(file.path).is_none();
+            if usual {
                 decisions.push(format!(
                     "{} frames a second, as in the CMU collection",
                     amc::USUAL_FPS
                 ));
             }
-            (Motion::Human(joints), options.fps.or(Some(amc::USUAL_FPS)))
+            (Motion::Human(joints), usual.then_some(amc::USUAL_FPS))
         }
         Format::Csv => {
             let mut table = csv::parse(file)?;
-            let fps = table.fps(file, options)?;
+            let fps = table.fps(file, options, decisions)?;
             if table.unsure {
                 let (rows, told) = order::of_rows(file, table.rows)?;
                 decisions.push(told);

@@ -11,6 +11,7 @@ mod tracking;
 pub use account::Account;
 pub use defect::{Defect, Frames, Kind, Severity, line, paragraph, severity};
 pub use defects::{Examination, defects};
+pub(crate) use defects::{all, of_source};
 pub use tracking::Tracking;
 
 use crate::clip::{Clip, FRAME_SECONDS};

@@ -4,7 +4,9 @@
 
 use crate::RATE;
 use crate::capture::{Capture, Side};
+use crate::contact;
 use crate::feet::Plan;
+use crate::floor::Floor;
 use crate::limb::{Chain, KNEE, LEGS, MARGIN};
 use crate::recipe::Posture;
 use crate::report::{Report, Sharpest, bones_off, held};
@@ -34,6 +36,10 @@ pub(crate) fn account(
     let off = errors.iter().filter(|error| **error > OFF_TARGET).count();
     let way =
         postures[postures.len() - 1].base.translation.vector - postures[0].base.translation.vector;
+    let standing: Vec<Option<f64>> = contact::standing_toes(human)
+        .into_iter()
+        .map(|height| Some(scale * height?))
+        .collect();
     let carried = plan.shift.iter().map(|shift| shift.xy().norm());
     Report {
         frames: postures.len(),
@@ -53,6 +59,7 @@ pub(crate) fn account(
         unreached: plan.unreached,
         carried: carried.fold(0.0, f64::max),
         lifted,
+        floor: Floor::of(&standing),
         at_limit: held(&at_limit(postures)),
         at_speed: held(slowed),
     }

@@ -63,6 +63,30 @@ pub fn stances(contacts: &[Contact], side: Side) -> Vec<(usize, usize)> {
     runs
 }
 
+/// Height of the lowest toe that is slow in each frame, m, at whatever height the ground is there; `None` where no toe is
+/// slow and nearly as low as the lower one.
+pub(crate) fn standing_toes(capture: &Capture) -> Vec<Option<f64>> {
+    let size = capture.leg_length() / USUAL_LEG;
+    let slow = (SLOW * size).max(SLOW_SHARE * capture.travel_speed());
+    let frames = &capture.frames;
+    let last = frames.len().saturating_sub(1);
+    let toe = |i: usize, side| frames[i].of(side, Landmark::Toe);
+    (0..frames.len())
+        .map(|i| {
+            let (a, b) = (i.saturating_sub(1), (i + 1).min(last));
+            let lower = Side::BOTH.map(|side| toe(i, side).z);
+            let lower = lower[0].min(lower[1]);
+            let stands = |side: &Side| {
+                let way = (toe(b, *side) - toe(a, *side)).norm();
+                let speed = way * capture.fps / (b - a).max(1) as f64;
+                speed < slow && toe(i, *side).z < lower + LOW * size
+            };
+            let standing = Side::BOTH.into_iter().filter(stands);
+            standing.map(|side| toe(i, side).z).reduce(f64::min)
+        })
+        .collect()
+}
+
 /// Where a point is low and slow.
 fn still(capture: &Capture, side: Side, landmark: Landmark, slow: f64, low: f64) -> Vec<bool> {
     let points: Vec<_> = capture
@@ -115,6 +139,24 @@ mod tests {
         }
         // A walk never flies.
         assert!(contacts.iter().all(|c| c.stands[0] || c.stands[1]));
+    }
+
+    #[test]
+    fn a_floor_that_rises_under_the_feet_is_measured() {
+        let by = |slope: f64| {
+            let mut capture = puppet::walking(50.0, 3.3);
+            let last = capture.frames.len() - 1;
+            for (i, frame) in capture.frames.iter_mut().enumerate() {
+                for point in &mut frame.0 {
+                    point.z += slope * i as f64 / last as f64;
+                }
+            }
+            crate::Floor::of(&standing_toes(&capture)).unwrap().by
+        };
+        assert!(by(0.0) < 0.01, "{}", by(0.0));
+        // 20 cm over 3.3 s, less up to half a second at either end.
+        assert!((0.13..0.21).contains(&by(0.2)), "{}", by(0.2));
+        assert!((0.13..0.21).contains(&by(-0.2)), "{}", by(-0.2));
     }
 
     #[test]

@@ -17,6 +17,7 @@ mod banded;
 pub mod capture;
 pub mod contact;
 pub mod feet;
+pub mod floor;
 mod limb;
 mod path;
 mod pelvis;
@@ -31,6 +32,7 @@ pub mod targets;
 mod puppet;
 
 pub use capture::{Capture, LANDMARKS, Landmark, Landmarks, Side};
+pub use floor::Floor;
 pub use recipe::{Posture, retarget};
 pub use report::Report;
 

@@ -2,6 +2,7 @@
 //!
 //! Separate because it is for people: they judge from it whether the clip is worth training on.
 
+use crate::floor::Floor;
 use g1::{JOINT_TABLE, JOINTS};
 use serde::{Deserialize, Serialize};
 
@@ -94,6 +95,9 @@ pub struct Report {
     pub carried: f64,
     /// Most that the robot was lifted at the end because a sole was below the ground, m.
     pub lifted: f64,
+    /// How uneven the ground under the human's standing feet is, scaled, before they were put on the ground.
+    #[serde(default)]
+    pub floor: Option<Floor>,
     /// Joints that stopped at a limit of position.
     pub at_limit: Vec<Held>,
     /// Joints that were slowed to what the motor can.
@@ -264,6 +268,7 @@ mod tests {
             unreached: 0.0,
             carried: 0.004,
             lifted: 0.002,
+            floor: None,
             at_limit: held(&counts),
             at_speed: Vec::new(),
         };

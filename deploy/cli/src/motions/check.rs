@@ -13,7 +13,7 @@ use motion::{Clip, FRAME_SECONDS};
 use serde_json::{Value, json};
 use wording::count;
 
-use super::files::Sources;
+use super::files::{Sources, describe};
 use crate::console;
 
 /// A speed within the set's range with less than this share of an even share is rare.
@@ -54,8 +54,7 @@ impl Check {
                     clips.push(imported.clip);
                 }
                 Err(error) => {
-                    let why = format!("{:#}", anyhow::Error::from(error));
-                    faults.unreadable.push((read.source.name, why));
+                    faults.unreadable.push((read.source.name, describe(&error)));
                 }
             }
         }
@@ -135,6 +134,11 @@ fn seconds_at<'a>(clips: impl Iterator<Item = &'a Clip>) -> Vec<f64> {
     seconds
 }
 
+/// The sum; of nothing it is 0, where the library's is -0.
+fn total(seconds: &[f64]) -> f64 {
+    seconds.iter().sum::<f64>() + 0.0
+}
+
 /// Strata between the slowest and the fastest that hold too little.
 fn rare(seconds: &[f64]) -> Vec<usize> {
     let first = seconds.iter().position(|s| *s > 0.0).unwrap_or(0);
@@ -171,7 +175,7 @@ fn show(
     rare: &[usize],
     faults: &Faults,
 ) -> Result<()> {
-    let total: f64 = seconds.iter().sum();
+    let total = total(seconds);
     let without = match faults.with(Severity::Unfit) {
         0 => String::new(),
         unfit => format!("; {unfit} of them unfit and not counted below"),
@@ -218,7 +222,7 @@ fn summary(clips: &[Clip], seconds: &[f64], rare: &[usize], faults: &Faults) -> 
     let low = |i: &usize| STRATUM * *i as f64;
     json!({
         "clips": clips.len(),
-        "seconds": seconds.iter().sum::<f64>(),
+        "seconds": total(seconds),
         "stratum": STRATUM,
         "seconds_by_stratum": seconds,
         "rare_from": rare.iter().map(low).collect::<Vec<_>>(),
@@ -279,6 +283,16 @@ mod tests {
                 .unwrap()
                 .contains("a: odd\n    soles are")
         );
+    }
+
+    #[test]
+    fn no_clips_last_no_time_and_not_less() {
+        let (mut out, faults) = (Vec::new(), Faults::default());
+        show(&mut out, &[], &[], &[], &faults).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        assert!(text.starts_with("0 clips, 0.0 min\n"), "{text}");
+        let text = summary(&[], &[], &[], &faults).to_string();
+        assert!(text.contains("\"seconds\":0.0,"), "{text}");
     }
 
     #[test]

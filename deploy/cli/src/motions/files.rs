@@ -1,9 +1,11 @@
-//! Which files are meant, how they are read, many at once, and where clips are written.
+//! Which files are meant, and how they are read, many at once.
 //!
 //! Separate because every subcommand asks for files in the same words.
 
-use std::collections::BTreeMap;
-use std::fs;
+mod readable;
+mod search;
+
+use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -18,11 +20,6 @@ use wording::count;
 
 use crate::console::{Console, say};
 use crate::failure::usage;
-
-/// What motion files end in: a folder is searched for these.
-const EXTENSIONS: [&str; 8] = ["npz", "bvh", "amc", "csv", "pkl", "npy", "motion", "pt"];
-/// What clips of frames end in, and much else: these are looked into.
-const TEXTS: [&str; 2] = ["json", "txt"];
 
 /// Files and what they do not say themselves.
 #[derive(Debug, Args)]
@@ -73,7 +70,10 @@ pub(super) struct Read {
 impl Source {
     fn read(&self, options: &Options) -> Read {
         let began = Instant::now();
-        let outcome = import::import(&self.path, options).map(|imported| Imported {
+        let outcome = readable::check(&self.path, options)
+            .and_then(|()| import::import(&self.path, options))
+            .map_err(readable::told);
+        let outcome = outcome.map(|imported| Imported {
             clip: Clip {
                 name: self.name.clone(),
                 ..imported.clip
@@ -89,11 +89,9 @@ impl Source {
 }
 
 impl Sources {
-    /// Reads all files, several at once, in their order; progress goes to standard error.
+    /// Reads all files, several at once, in their order, under names that differ; progress goes to standard error.
     pub(super) fn read(&self) -> Result<Vec<Read>> {
-        let sources = self.found()?;
-        distinct(&sources)?;
-        Ok(self.read_found(sources))
+        Ok(self.read_found(told_apart(self.found()?)))
     }
 
     /// Reads files that were found.
@@ -166,118 +164,97 @@ impl Sources {
         }
     }
 
-    /// The files, folders searched.
+    /// The files, folders searched; a file that is given several times is taken once.
     pub(super) fn found(&self) -> Result<Vec<Source>> {
-        let mut sources = Vec::new();
+        let (mut sources, mut again) = (Vec::new(), Vec::new());
+        let mut known = HashSet::new();
         for path in &self.paths {
-            if path.is_dir() {
-                let before = sources.len();
-                let mut passed = Vec::new();
-                search(path, path, &mut sources, &mut passed)
-                    .with_context(|| format!("searching {}", path.display()))?;
-                say_passed(&passed);
-                if sources.len() == before {
-                    let endings = EXTENSIONS.join(", ");
-                    return Err(usage(format!(
-                        "{} holds no motion file ({endings})",
-                        path.display()
-                    )));
+            for source in given(path)? {
+                if known.insert(search::key(&source.path)) {
+                    sources.push(source);
+                } else {
+                    again.push(source.path);
                 }
-            } else {
-                sources.push(Source {
-                    path: path.clone(),
-                    name: name(path),
-                    searched: false,
-                });
             }
+        }
+        if !again.is_empty() {
+            say(&few(&again, "given again and taken once"));
         }
         Ok(sources)
     }
 }
 
-/// Refuses two files of one name: nobody could tell what is shown of them.
-fn distinct(sources: &[Source]) -> Result<()> {
-    let mut known: BTreeMap<&str, &Path> = BTreeMap::new();
-    for source in sources {
-        if let Some(other) = known.insert(&source.name, &source.path) {
-            return Err(usage(format!(
-                "{} and {} would have the same name; give their common folder, or one at a time",
-                other.display(),
-                source.path.display()
-            )));
-        }
+/// The files that an argument means.
+fn given(path: &Path) -> Result<Vec<Source>> {
+    if !path.is_dir() {
+        return Ok(vec![Source {
+            path: path.to_owned(),
+            name: name(path),
+            searched: false,
+        }]);
     }
-    Ok(())
+    let found = search::search(path).with_context(|| format!("searching {}", shown(path)))?;
+    if !found.passed.is_empty() {
+        let what = "with the shape of a body and no motion";
+        say(&format!("passed over {}", few(&found.passed, what)));
+    }
+    if found.sources.is_empty() {
+        let endings = search::EXTENSIONS.join(", ");
+        return Err(usage(format!(
+            "{} holds no motion file ({endings})",
+            shown(path)
+        )));
+    }
+    Ok(found.sources)
 }
 
-/// Says what was passed over, in a line.
-fn say_passed(passed: &[PathBuf]) {
+/// Sources whose names differ: those of one name are called by their paths.
+fn told_apart(mut sources: Vec<Source>) -> Vec<Source> {
+    let mut times: BTreeMap<String, usize> = BTreeMap::new();
+    for source in &sources {
+        *times.entry(source.name.clone()).or_default() += 1;
+    }
+    for source in &mut sources {
+        if times.get(&source.name).is_some_and(|times| *times > 1) {
+            source.name = shown(&source.path);
+        }
+    }
+    sources
+}
+
+/// How many files, and the first few of them.
+fn few(paths: &[PathBuf], what: &str) -> String {
     const SHOWN: usize = 3;
-    if passed.is_empty() {
-        return;
-    }
-    let shown: Vec<String> = passed
-        .iter()
-        .take(SHOWN)
-        .map(|path| path.display().to_string())
-        .collect();
-    let more = if passed.len() > SHOWN { ", …" } else { "" };
-    say(&format!(
-        "passed over {} with the shape of a body and no motion: {}{more}",
-        count(passed.len(), "file"),
-        shown.join(", ")
-    ));
+    let names: Vec<String> = paths.iter().take(SHOWN).map(|path| shown(path)).collect();
+    let more = if paths.len() > SHOWN { ", …" } else { "" };
+    let files = count(paths.len(), "file");
+    format!("{files} {what}: {}{more}", names.join(", "))
 }
 
-/// Motion files below a folder, sorted; their names carry the folders between.
-/// Those that hold a body's shape and no motion come into `passed`.
-fn search(
-    root: &Path,
-    folder: &Path,
-    sources: &mut Vec<Source>,
-    passed: &mut Vec<PathBuf>,
-) -> Result<()> {
-    let mut paths: Vec<PathBuf> = fs::read_dir(folder)?
-        .map(|entry| entry.map(|entry| entry.path()))
-        .collect::<Result<_, _>>()?;
-    paths.sort();
-    for path in paths {
-        let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-        let ending = ending.as_deref().unwrap_or_default();
-        if path.is_dir() {
-            search(root, &path, sources, passed)?;
-        } else if ending == "npz" && import::is_body_shape(&path) {
-            passed.push(path);
-        } else if EXTENSIONS.contains(&ending)
-            || TEXTS.contains(&ending) && import::is_text_of_frames(&path)
-        {
-            let inner = path.strip_prefix(root).unwrap_or(&path);
-            let name = name(inner);
-            let folders = inner
-                .parent()
-                .map(|p| p.to_string_lossy().replace('/', "_"));
-            let name = match folders.as_deref() {
-                None | Some("") => name,
-                Some(folders) => format!("{folders}_{name}"),
-            };
-            sources.push(Source {
-                path,
-                name,
-                searched: true,
-            });
-        }
-    }
-    Ok(())
-}
-
+/// The name of a clip from a file, in a line.
 fn name(path: &Path) -> String {
-    path.file_stem()
-        .map_or_else(|| "clip".into(), |stem| stem.to_string_lossy().into_owned())
+    path.file_stem().map_or_else(
+        || "clip".into(),
+        |stem| stem.to_string_lossy().replace(char::is_control, "_"),
+    )
 }
 
-/// Makes the folder that plots are written to.
-pub(super) fn make_folder(out: &Path) -> Result<()> {
-    fs::create_dir_all(out).with_context(|| format!("making the folder {}", out.display()))
+/// A path as messages show it: in one line, without what a terminal would obey.
+pub(super) fn shown(path: &Path) -> String {
+    wording::harmless(&path.to_string_lossy())
+        .replace('\n', "\\n")
+        .replace('\t', "\\t")
+}
+
+/// An error and its causes in a line.
+pub(super) fn describe(error: &MotionError) -> String {
+    let mut text = error.to_string();
+    let mut cause = std::error::Error::source(error);
+    while let Some(error) = cause {
+        text = format!("{text}: {error}");
+        cause = error.source();
+    }
+    text
 }
 
 #[cfg(test)]

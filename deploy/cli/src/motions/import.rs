@@ -11,11 +11,12 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use motion::import::Imported;
 use motion::quality::Examination;
-use serde_json::{Value, json};
+use serde_json::Value;
 use wording::count;
 
-use super::files::{Read, Source, Sources};
-use super::output::{self, Output, WRITTEN_BY};
+use super::files::{Read, Source, Sources, describe, shown};
+use super::output::{self, Output};
+use super::report::{self, Made};
 use crate::console;
 use crate::failure::usage;
 use outcome::{Outcome, Written};
@@ -83,9 +84,9 @@ fn carry_out(read: Read, output: &Output) -> Outcome {
         Err(error) => return failed(describe(&error)),
     };
     let found = Examination::of(&imported, &source.path);
-    let report = report(&source, &imported, &found);
+    let report = report::report(Made::Imported, &source.path, &imported, &found);
     if let Err(error) = write(output, &imported, &report) {
-        return failed(format!("{}: {error:#}", source.path.display()));
+        return failed(format!("{}: {error:#}", shown(&source.path)));
     }
     Outcome::Written(Box::new(Written {
         quality: found.quality,
@@ -94,17 +95,6 @@ fn carry_out(read: Read, output: &Output) -> Outcome {
         report,
         seconds: read.seconds,
     }))
-}
-
-/// An error and its causes in a line.
-fn describe(error: &motion::MotionError) -> String {
-    let mut text = error.to_string();
-    let mut cause = std::error::Error::source(error);
-    while let Some(error) = cause {
-        text = format!("{text}: {error}");
-        cause = error.source();
-    }
-    text
 }
 
 impl Import {
@@ -116,7 +106,7 @@ impl Import {
             .into_iter()
             .partition(|s| s.searched && output::is_output(&s.path, &self.out));
         if !written.is_empty() {
-            let out = self.out.display();
+            let out = shown(&self.out);
             if sources.is_empty() {
                 return Err(usage(format!(
                     "only clips that were written to {out} before are there; give motion files, or \
@@ -133,36 +123,12 @@ impl Import {
 }
 
 fn output(out: &Path, source: &Source) -> Output {
-    Output::new(out, &source.name, output::origin("from", &source.path)).with_report()
+    Output::new(out, &source.name, Made::Imported.origin(&source.path)).with_report()
 }
 
-/// The report first: a clip without one is what a folder of clips must not hold.
 fn write(output: &Output, imported: &Imported, report: &Value) -> Result<()> {
-    if let Some(path) = &output.report {
-        let text = serde_json::to_string_pretty(report).context("writing a report")?;
-        run::replace_file(path, text.as_bytes())
-            .with_context(|| format!("writing {}", path.display()))?;
-    }
+    output.write_report(report)?;
     output.write(&imported.clip, &[format!("format {}", imported.format)])
-}
-
-fn report(source: &Source, imported: &Imported, found: &Examination) -> Value {
-    // A table that was imported before brings its account along.
-    let retargeting = found.account.report();
-    let (written_by, this) = WRITTEN_BY;
-    json!({
-        written_by: this,
-        "name": imported.clip.name,
-        "source": source.path.display().to_string(),
-        "format": imported.format,
-        "frames": imported.frames,
-        "fps": imported.fps,
-        "decisions": imported.decisions,
-        "retargeting": retargeting,
-        "actions": retargeting.map(retarget::Report::actions),
-        "quality": found.quality,
-        "defects": found.defects,
-    })
 }
 
 #[cfg(test)]

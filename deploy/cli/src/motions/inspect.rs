@@ -3,14 +3,15 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use g1::{JOINT_TABLE, JOINTS};
 use motion::Clip;
 use motion::quality::{Examination, paragraph};
 use serde_json::{Value, json};
 
-use super::files::{self, Sources};
-use super::{plots, table};
+use super::files::{Source, Sources, describe};
+use super::output::{self, Output};
+use super::table;
 use crate::console;
 
 /// The arguments.
@@ -28,21 +29,28 @@ pub(super) struct Inspect {
 
 impl Inspect {
     pub(super) fn run(&self) -> Result<()> {
-        let reads = self.sources.read()?;
-        if let Some(folder) = &self.plots {
-            files::make_folder(folder)?;
-        }
+        let (reads, figures) = match &self.plots {
+            None => (self.sources.read()?, Vec::new()),
+            Some(folder) => {
+                let sources = self.sources.found()?;
+                let figure =
+                    |s: &Source| Output::figure(folder, &s.name, output::origin("from", &s.path));
+                let figures: Vec<Output> = sources.iter().map(figure).collect();
+                output::claim(folder, &figures, &self.sources.files(&sources))?;
+                (self.sources.read_found(sources), figures)
+            }
+        };
         let mut out = console::results();
         let (mut rows, mut failures) = (Vec::new(), Vec::new());
         if !self.json {
             writeln!(out, "{}", table::HEADING)?;
         }
         let few = reads.len() <= 3;
-        for read in reads {
+        for (i, read) in reads.into_iter().enumerate() {
             let imported = match read.outcome {
                 Ok(imported) => imported,
                 Err(error) => {
-                    failures.push(format!("{:#}", anyhow::Error::from(error)));
+                    failures.push(describe(&error));
                     continue;
                 }
             };
@@ -61,9 +69,8 @@ impl Inspect {
                     details(&mut out, &clip, &found)?;
                 }
             }
-            if let Some(folder) = &self.plots {
-                let path = folder.join(format!("{}.svg", clip.name));
-                plots::draw(&clip, &path).with_context(|| format!("drawing {}", path.display()))?;
+            if let Some(figure) = figures.get(i) {
+                figure.draw(&clip)?;
             }
         }
         if self.json {
@@ -95,6 +102,11 @@ fn range(clip: &Clip, joint: usize) -> [f32; 3] {
     ]
 }
 
+/// Rounded to what is shown: what is hardly below 0 is not shown as -0.00.
+fn hundredths(value: f64) -> f64 {
+    (100.0 * value).round() / 100.0 + 0.0
+}
+
 fn details(out: &mut impl Write, clip: &Clip, found: &Examination) -> Result<()> {
     let quality = &found.quality;
     let [slow, fast] = quality.speed_range;
@@ -102,7 +114,7 @@ fn details(out: &mut impl Write, clip: &Clip, found: &Examination) -> Result<()>
     writeln!(
         out,
         "    speed {slow:.2}–{fast:.2} m/s, turning {:.2} rad/s, pelvis {low:.2}–{high:.2} m",
-        quality.yaw_rate
+        hundredths(quality.yaw_rate)
     )?;
     writeln!(
         out,
@@ -123,7 +135,8 @@ fn details(out: &mut impl Write, clip: &Clip, found: &Examination) -> Result<()>
         "joint", "rad", "of rad", "rad/s"
     )?;
     for (j, joint) in JOINT_TABLE.iter().enumerate() {
-        let [low, high, speed] = range(clip, j);
+        let [low, high, speed] = range(clip, j).map(f64::from);
+        let (low, high) = (hundredths(low), hundredths(high));
         writeln!(
             out,
             "    {:<28} {low:6.2} to {high:5.2} {:7.2} to {:6.2} {speed:8.1}",
@@ -135,3 +148,6 @@ fn details(out: &mut impl Write, clip: &Clip, found: &Examination) -> Result<()>
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

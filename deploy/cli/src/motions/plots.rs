@@ -2,9 +2,6 @@
 //!
 //! Separate because it chooses what is worth seeing; the drawing is `plots`'.
 
-use std::path::Path;
-
-use anyhow::Result;
 use g1::joints::{LEFT_ARM, LEFT_LEG, RIGHT_LEG, WAIST};
 use g1::kinematics::{forward_state, lowest_sole_point};
 use g1::{JOINT_TABLE, LEFT_FOOT, RIGHT_FOOT};
@@ -12,10 +9,30 @@ use motion::quality::{TOUCHING, speeds};
 use motion::{Clip, FRAME_SECONDS};
 use plots::{Axis, Colour, ContactRow, ContactStrip, Figure, Line, LineChart, Panel};
 
-/// Writes a clip's figure into an SVG file.
-pub(super) fn draw(clip: &Clip, path: &Path) -> Result<()> {
-    run::replace_file(path, figure(clip).svg().as_bytes())?;
-    Ok(())
+/// What the description in a figure's file begins with: no other figure is ever written over.
+const MARK: &str = "<desc>ampco motions inspect: ";
+
+/// A clip's figure as the text of an SVG file, which says what the clip is made from.
+pub(super) fn svg(clip: &Clip, origin: &str) -> String {
+    let svg = figure(clip).svg();
+    let opened = svg.find('>').map_or(0, |at| at + 1);
+    let (tag, rest) = svg.split_at(opened);
+    let origin = origin
+        .replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;");
+    format!("{tag}\n{MARK}{origin}</desc>{rest}")
+}
+
+/// What the clip of a figure is made from; `None` of what was not drawn by [`svg`].
+pub(super) fn origin(text: &str) -> Option<String> {
+    let (_, rest) = text.strip_prefix("<svg")?.split_once('>')?;
+    let (origin, _) = rest
+        .trim_start()
+        .strip_prefix(MARK)?
+        .split_once("</desc>")?;
+    let origin = origin.replace("&lt;", "<").replace("&gt;", ">");
+    Some(origin.replace("&amp;", "&"))
 }
 
 fn figure(clip: &Clip) -> Figure {
@@ -112,10 +129,13 @@ mod tests {
 
     #[test]
     fn a_figure_shows_speed_feet_and_joints() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("walk.svg");
-        draw(&motion::gait::walk(1.0).unwrap(), &path).unwrap();
-        let svg = std::fs::read_to_string(&path).unwrap();
+        let made = "from <a> & &lt;b.csv";
+        let svg = svg(&motion::gait::walk(1.0).unwrap(), made);
+        assert_eq!(origin(&svg).as_deref(), Some(made));
+        assert_eq!(svg.matches("&lt;a&gt; &amp; &amp;lt;b.csv").count(), 1);
+        for other in ["", "<svg/>", "<svg><desc>mine</desc></svg>", "# ampco"] {
+            assert_eq!(origin(other), None, "{other}");
+        }
         assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
         for part in [
             "speed",

@@ -3,7 +3,7 @@
 use crate::clip::Clip;
 use crate::config::{ClipConfig, Gait, wrong};
 use crate::error::MotionError;
-use crate::quality::{Account, Defect, Quality, defects};
+use crate::quality::{Account, Defect, Quality, all, of_source};
 use crate::{gait, import};
 use std::path::{Path, PathBuf};
 
@@ -14,6 +14,8 @@ pub struct Reference {
     pub clip: Clip,
     /// What is known of how it came about; `None` of a built-in gait.
     pub account: Option<Account>,
+    /// The defects that its source had and import mended.
+    pub source: Vec<Defect>,
 }
 
 impl Reference {
@@ -21,7 +23,7 @@ impl Reference {
     /// would only cost time at every start.
     pub fn defects(&self) -> Vec<Defect> {
         self.account.as_ref().map_or_else(Vec::new, |account| {
-            defects(&self.clip, &Quality::of(&self.clip), account)
+            all(&self.clip, &Quality::of(&self.clip), account, &self.source)
         })
     }
 }
@@ -56,6 +58,7 @@ pub(super) fn load_clips(
             vec![Reference {
                 clip,
                 account: None,
+                source: Vec::new(),
             }]
         }
         (None, Some(file), _) => vec![read(&base_dir.join(file), &options)?],
@@ -106,6 +109,7 @@ fn read(file: &Path, options: &import::Options) -> Result<Reference, MotionError
     let imported = import::import(file, options)?;
     Ok(Reference {
         account: Some(Account::of(&imported, file)),
+        source: of_source(&imported, file),
         clip: imported.clip,
     })
 }

@@ -35,7 +35,7 @@ pub(super) fn read(
         let pickle = Pickle::of_npy(file)?;
         let part = |name: &str| {
             pickle.array(&[name]).ok_or_else(|| {
-                let keys = pickle.keys().join(", ");
+                let keys = pickle.holds();
                 file.unusable(
                     &format!("has no array {name} with frames of equal length (but {keys})"),
                     "expected joints_list, joint_positions, root_position, root_quaternion, fps",

@@ -3,7 +3,7 @@
 //! Separate because a spline between rows may leave both, and files come from robots, solvers and
 //! people that knew neither.
 
-use super::Row;
+use super::{Jump, Row};
 use crate::clip::FRAME_SECONDS;
 use g1::JOINT_TABLE;
 
@@ -14,9 +14,11 @@ const MARGIN: f64 = 1e-6;
 const TOO_FAST: f64 = 0.999;
 const SLOWED: f64 = 0.95;
 
-/// Moves joints of rows at 50 Hz as little as it takes to stay within limits and speeds; says which.
-pub(super) fn hold(rows: &mut [Row], decisions: &mut Vec<String>) {
+/// Moves joints of rows at 50 Hz as little as it takes to stay within limits and speeds; says which, and gives what each
+/// joint that it moved did before.
+pub(super) fn hold(rows: &mut [Row], decisions: &mut Vec<String>) -> Vec<Jump> {
     let (mut at_limit, mut at_speed) = (Vec::new(), Vec::new());
+    let mut jumps = Vec::new();
     for (j, joint) in JOINT_TABLE.iter().enumerate() {
         let raw: Vec<f64> = rows.iter().map(|row| row.joints[j]).collect();
         let mut held: Vec<f64> = raw
@@ -35,6 +37,9 @@ pub(super) fn hold(rows: &mut [Row], decisions: &mut Vec<String>) {
             at_speed.push(format!("{} (of {:.1} times)", joint.name, fastest / reach));
             held = slowed(&held, SLOWED * reach);
         }
+        if fastest > TOO_FAST * reach || beyond > 2.0 * MARGIN {
+            jumps.extend(jump(joint.name, &raw, reach));
+        }
         for (row, q) in rows.iter_mut().zip(held) {
             row.joints[j] = q;
         }
@@ -46,6 +51,28 @@ pub(super) fn hold(rows: &mut [Row], decisions: &mut Vec<String>) {
         let slowed = at_speed.join(", ");
         decisions.push(format!("slowed to their motors' speeds: {slowed}"));
     }
+    jumps
+}
+
+/// The greatest step of a joint that its motor moves by `reach` in a frame, rad.
+fn jump(joint: &str, series: &[f64], reach: f64) -> Option<Jump> {
+    let step = |i: usize| series[i] - series[i - 1];
+    let worst = (1..series.len()).max_by(|&i, &j| step(i).abs().total_cmp(&step(j).abs()))?;
+    let changes: Vec<f64> = (2..series.len())
+        .map(|i| (step(i) - step(i - 1)) / (FRAME_SECONDS * FRAME_SECONDS))
+        .collect();
+    let reversals = changes
+        .windows(2)
+        .filter(|pair| pair[0] * pair[1] < 0.0)
+        .map(|pair| pair[0].abs().min(pair[1].abs()));
+    Some(Jump {
+        joint: joint.into(),
+        frame: worst + 1,
+        angle: step(worst).abs(),
+        times: step(worst).abs() / reach,
+        acceleration: changes.iter().fold(0.0, |most, a| a.abs().max(most)),
+        reversal: reversals.fold(0.0, f64::max),
+    })
 }
 
 /// A series whose steps are at most `reach`: half way between the greatest such series below and the
@@ -140,7 +167,15 @@ mod tests {
         );
         // 1 rad a frame is 2.5 times the knee's 0.4.
         decisions.clear();
-        hold(&mut moving(3, &[0.1, 0.1, 1.1, 1.1]), &mut decisions);
+        let jumps = hold(&mut moving(3, &[0.1, 0.1, 1.1, 1.1]), &mut decisions);
+        let [jump] = jumps.as_slice() else {
+            panic!("{jumps:?}");
+        };
+        assert_eq!((jump.joint.as_str(), jump.frame), ("left_knee_joint", 3));
+        assert!((jump.angle - 1.0).abs() < 1e-9 && (jump.times - 2.5).abs() < 1e-9);
+        // 1 rad over (0.02 s)², and back in the next frame.
+        assert!((jump.acceleration - 2500.0).abs() < 1e-6);
+        assert!((jump.reversal - 2500.0).abs() < 1e-6);
         assert_eq!(
             decisions,
             ["slowed to their motors' speeds: left_knee_joint (of 2.5 times)"]

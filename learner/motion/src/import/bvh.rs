@@ -10,6 +10,9 @@ use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use std::collections::BTreeMap;
 use wording::count;
 
+/// What to do about a text that ends too early.
+const CUT_OFF: &str = "download or export it again: it is cut off";
+
 /// A channel of a joint: an axis to move along or to turn about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Channel {
@@ -88,7 +91,7 @@ fn hierarchy(words: &mut Words<'_>, names: &mut Vec<String>) -> Result<Vec<Joint
     let mut open: Vec<usize> = Vec::new();
     words.expect("HIERARCHY")?;
     loop {
-        let (line, word) = words.word("a joint")?;
+        let (_, word) = words.word("a joint")?;
         match word {
             "ROOT" | "JOINT" | "End" => {
                 let name = words.name()?;
@@ -129,7 +132,7 @@ fn hierarchy(words: &mut Words<'_>, names: &mut Vec<String>) -> Result<Vec<Joint
             other => {
                 let problem = format!("{other:?} in the hierarchy");
                 let remedy = "expected JOINT, End Site, OFFSET, CHANNELS or }; export it again";
-                return Err(words.file.line(line, problem, remedy));
+                return Err(words.error(problem, remedy));
             }
         }
     }
@@ -211,7 +214,7 @@ impl<'a> Words<'a> {
     fn word(&mut self, what: &str) -> Result<(usize, &'a str), MotionError> {
         let Some((line, word)) = self.words.next() else {
             let problem = format!("ends where {what} should be");
-            return Err(self.error(problem, "download or export it again: it is cut off"));
+            return Err(self.file.line(self.line, problem, CUT_OFF));
         };
         self.line = line;
         Ok((line, word))
@@ -266,20 +269,23 @@ impl<'a> Words<'a> {
                 count(channel, "number"),
                 count(channels, "channel")
             );
-            return Err(self.file.frame(
-                frame,
-                &field,
-                problem,
-                "give every frame a line of all channels",
-            ));
+            let remedy = if self.more() {
+                "give every frame a line of all channels"
+            } else {
+                CUT_OFF
+            };
+            return Err(self.file.frame(frame, &field, problem, remedy));
         };
         match word.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
             _ => {
                 let problem = format!("{word:?} is not a finite number");
-                Err(self
-                    .file
-                    .frame(frame, &field, problem, "repair or cut the frame"))
+                let remedy = if self.more() {
+                    "repair or cut the frame"
+                } else {
+                    CUT_OFF
+                };
+                Err(self.file.frame(frame, &field, problem, remedy))
             }
         }
     }
@@ -302,7 +308,7 @@ impl<'a> Words<'a> {
     }
 
     fn current<'j>(
-        &self,
+        &mut self,
         joints: &'j mut [Joint],
         open: &[usize],
     ) -> Result<&'j mut Joint, MotionError> {
@@ -312,8 +318,13 @@ impl<'a> Words<'a> {
         }
     }
 
-    fn error(&self, problem: String, remedy: &str) -> MotionError {
-        self.file.line(self.line, problem, remedy)
+    /// What is wrong with the last word; where the text ends with it, it is half a word.
+    fn error(&mut self, problem: String, remedy: &str) -> MotionError {
+        if self.more() {
+            return self.file.line(self.line, problem, remedy);
+        }
+        let problem = format!("{problem}, where the text ends");
+        self.file.line(self.line, problem, CUT_OFF)
     }
 }
 

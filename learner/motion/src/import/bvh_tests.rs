@@ -227,6 +227,20 @@ fn errors_name_line_or_frame() {
 }
 
 #[test]
+fn a_text_that_ends_in_the_hierarchy_is_cut_off() {
+    let begin = ARM.find("MOTION").unwrap();
+    for cut in 9..begin {
+        let message = positions(&ARM[..cut]).unwrap_err();
+        assert!(message.contains("cut off"), "{cut}: {message}");
+    }
+    let cut = ARM.find("Zrotation").unwrap() + 2;
+    let message = positions(&ARM[..cut]).unwrap_err();
+    for part in ["line 5", "\"Zr\"", "the text ends", "cut off"] {
+        assert!(message.contains(part), "{part:?} is not in {message:?}");
+    }
+}
+
+#[test]
 fn no_cut_panics() {
     for cut in 0..ARM.len() {
         let _ = positions(&ARM[..cut]);

@@ -40,7 +40,7 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// Frames per second, if the file says them.
+    /// Frames per second, if the file says them; which of two that are nearly the same is taken goes to `decisions`.
     ///
     /// # Errors
     /// If it says two that differ, and the user none above them.
@@ -48,9 +48,10 @@ impl Table {
         &self,
         file: &File<'_>,
         options: &Options,
+        decisions: &mut Vec<String>,
     ) -> Result<Option<f64>, MotionError> {
         let above = options.fps.filter(|_| options.force_fps);
-        rate::one(file, &self.stated, above)
+        rate::one(file, &self.stated, above, decisions)
     }
 }
 

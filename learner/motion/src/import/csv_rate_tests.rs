@@ -15,7 +15,9 @@ fn by(table: &Table, options: &Options) -> Result<Option<f64>, String> {
         path: Path::new("walk.csv"),
         bytes: b"",
     };
-    table.fps(&file, options).map_err(|e| e.to_string())
+    table
+        .fps(&file, options, &mut Vec::new())
+        .map_err(|e| e.to_string())
 }
 
 /// A table with comments and a column of times.
@@ -115,6 +117,33 @@ fn times_that_contradict_a_comment_are_an_error() {
         message.contains("line 1") && message.contains("line 3"),
         "{message}"
     );
+}
+
+#[test]
+fn of_two_rates_that_nearly_agree_the_one_that_is_passed_over_is_said() {
+    let told = |comment: &str| {
+        let table = timed(comment, &["0.00", "0.02", "0.04", "0.06"]).unwrap();
+        let file = File {
+            path: Path::new("walk.csv"),
+            bytes: b"",
+        };
+        let mut decisions = Vec::new();
+        let fps = table.fps(&file, &Options::default(), &mut decisions);
+        (fps.unwrap().unwrap(), decisions)
+    };
+    for fps in [51.0, 50.4, 50.9] {
+        let (taken, decisions) = told(&format!("# fps = {fps}\n"));
+        assert_eq!(taken, fps);
+        let [said] = decisions.as_slice() else {
+            panic!("{decisions:?}");
+        };
+        assert!(
+            said.starts_with(&format!("{fps} frames a second as line 1")),
+            "{said}"
+        );
+        assert!(said.contains("passed over: 50 in the column"), "{said}");
+    }
+    assert!(told("# fps = 50\n").1.is_empty());
 }
 
 #[test]

@@ -200,7 +200,7 @@ fn detect_pickle(file: &File<'_>) -> Result<(Format, String), MotionError> {
     Err(file.unusable(
         &format!(
             "is a pickle with {}, which no known format has",
-            wording::line(&pickle.keys().join(", "))
+            pickle.holds()
         ),
         "known are PHC, ASAP and PBHC, GMR, and MimicKit; say which with --format",
     ))
@@ -233,7 +233,7 @@ fn detect_npz(file: &File<'_>) -> Result<(Format, String), MotionError> {
         return Err(file.unusable(
             &format!(
                 "is PyTorch's archive of {}, which no known format has",
-                wording::line(&pickle.keys().join(", "))
+                pickle.holds()
             ),
             "known are ProtoMotions' .motion and .pt",
         ));
@@ -251,6 +251,9 @@ fn detect_npz(file: &File<'_>) -> Result<(Format, String), MotionError> {
             "holds the shape of a body and no motion",
             "import the motions beside it; shapes in folders are passed over",
         ));
+    }
+    if names.is_empty() {
+        return Err(file.unusable("holds no arrays", "download or export it again"));
     }
     Err(file.unusable(
         &format!(

@@ -42,6 +42,23 @@ fn bytes_are_told_by_their_marks() {
     assert!(message.contains("cut off"), "{message}");
     let message = told(b"\x80\x04}\x8c\x01aK\x01s.").unwrap_err();
     assert!(message.contains("pickle with a,"), "{message}");
+    let cases: [(&[u8], &str); 5] = [
+        (b"\x80\x04}.", "an empty dictionary"),
+        (b"\x80\x04].", "an empty list"),
+        (b"\x80\x04](K\x01K\x02e.", "a list of 2 values"),
+        (
+            b"\x80\x04}K\x01K\x02s.",
+            "a dictionary without names of 1 value",
+        ),
+        (b"\x80\x04K\x07.", "the number 7"),
+    ];
+    for (bytes, holds) in cases {
+        let message = told(bytes).unwrap_err();
+        assert!(
+            message.contains(&format!("pickle with {holds}, which")),
+            "{message}"
+        );
+    }
     let message = told(b"\x80\x02\x8a\nl\xfc\x9cF\xf9 j\xa8P\x19.\x80\x02M").unwrap_err();
     assert!(message.contains("torch.save"), "{message}");
     let message = told(b"PK\x03\x04 cut off").unwrap_err();

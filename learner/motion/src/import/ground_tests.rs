@@ -99,3 +99,16 @@ fn where_no_sole_stands_the_lowest_tenth_does() {
         "{decisions:?}"
     );
 }
+
+#[test]
+fn a_floor_that_rises_is_measured_before_it_is_hidden() {
+    // 6 cm over 4 s: 0.3 mm a frame, of which the second frames of the pieces at the ends are 175 apart.
+    for way in [1.0, -1.0] {
+        let mut rows = standing(201, |i| way * 0.0003 * i as f64);
+        let floor = put(&mut rows, &mut Vec::new()).unwrap();
+        assert!((floor.by - 0.0525).abs() < 2e-4, "{floor:?}");
+        assert_eq!(floor.highest > floor.lowest, way > 0.0);
+    }
+    let level = put(&mut standing(201, |_| 0.1), &mut Vec::new()).unwrap();
+    assert!(level.by < 1e-9);
+}

@@ -82,7 +82,7 @@ pub(super) fn gym(
     let pickle = Pickle::of_npy(file)?;
     let part = |path: &[&str]| {
         pickle.array(path).ok_or_else(|| {
-            let keys = wording::line(&pickle.keys().join(", "));
+            let keys = pickle.holds();
             file.unusable(
                 &format!("has no array {} (but {keys})", path.join(".")),
                 "save it from a SkeletonMotion",

@@ -37,10 +37,7 @@ pub(super) fn read(
     let pickle = Pickle::read(file, file.bytes)?;
     let frames = pickle.array(&["frames"]).ok_or_else(|| {
         file.unusable(
-            &format!(
-                "has no frames of equal length (but {})",
-                pickle.keys().join(", ")
-            ),
+            &format!("has no frames of equal length (but {})", pickle.holds()),
             "expected loop_mode, fps and frames, as Motion.save writes them",
         )
     })?;

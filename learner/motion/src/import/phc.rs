@@ -121,7 +121,7 @@ fn part<'n>(
             &format!(
                 "has no array {} (but {})",
                 names.join(" or "),
-                pickle.keys().join(", ")
+                pickle.holds()
             ),
             "expected root_trans_offset, root_rot and dof, or pose_aa and trans_orig",
         )

@@ -200,11 +200,7 @@ fn part<'n>(
         .find_map(|&name| Some((pickle.array(&[name])?, name)));
     found.ok_or_else(|| {
         file.unusable(
-            &format!(
-                "has no array {} (but {})",
-                names[0],
-                pickle.keys().join(", ")
-            ),
+            &format!("has no array {} (but {})", names[0], pickle.holds()),
             "expected fps, dof_pos, rigid_body_pos and rigid_body_rot",
         )
     })

@@ -6,6 +6,7 @@
 use super::Options;
 use super::file::File;
 use crate::error::MotionError;
+use std::path::Path;
 
 /// Rates that differ by a smaller share are the same, rounded: 1/0.033 s and 30, 29.97 and 30. Film and
 /// video, 24 and 25, are not.
@@ -18,12 +19,49 @@ pub(super) fn agree(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDING * a.abs().min(b.abs())
 }
 
+/// Whether two rates differ by more than what is worth a word.
+pub(super) fn differ(a: f64, b: f64) -> bool {
+    (a / b - 1.0).abs() > NOTICED
+}
+
+/// The rate that a file's name states, as in `walk_60Hz.csv`, `walk-29.97fps.csv` or `walk_fps30.csv`; `None` if it states
+/// none, or two. Less than 10 is a cadence and no rate of frames.
+pub(super) fn in_name(path: &Path) -> Option<f64> {
+    let name = path.file_name()?.to_string_lossy().to_lowercase();
+    let mut rates: Vec<f64> = Vec::new();
+    for unit in ["hz", "fps"] {
+        for (at, _) in name.match_indices(unit) {
+            let (before, after) = (&name[..at], &name[at + unit.len()..]);
+            let between = |c: char| matches!(c, '_' | '-' | ' ' | '=');
+            let letter = |c: Option<char>| c.is_some_and(char::is_alphanumeric);
+            let digit = |c: char| c.is_ascii_digit() || c == '.';
+            let number = if !letter(after.chars().next()) {
+                let before = before.strip_suffix(between).unwrap_or(before);
+                &before[before.trim_end_matches(digit).len()..]
+            } else {
+                ""
+            };
+            let number = if number.is_empty() && !letter(before.chars().next_back()) {
+                let after = after.strip_prefix(between).unwrap_or(after);
+                let rest = after.trim_start_matches(digit);
+                &after[..after.len() - rest.len()]
+            } else {
+                number
+            };
+            rates.extend(number.trim_matches('.').parse::<f64>());
+        }
+    }
+    rates.retain(|fps| (10.0..=10_000.0).contains(fps));
+    let first = *rates.first()?;
+    rates.iter().all(|fps| *fps == first).then_some(first)
+}
+
 /// A rate in at most three decimals.
 pub(super) fn shown(fps: f64) -> String {
     format!("{}", (1000.0 * fps).round() / 1000.0)
 }
 
-/// The rate of a file that states `stated`, under what the user says.
+/// The rate of a file that states `stated`, or if it states none its name, under what the user says.
 ///
 /// # Errors
 /// No rate at all, one that no motion has, or a user's that contradicts the file's.
@@ -33,6 +71,15 @@ pub(super) fn decide(
     stated: Option<f64>,
     decisions: &mut Vec<String>,
 ) -> Result<f64, MotionError> {
+    let named = in_name(file.path).filter(|_| stated.is_none());
+    let where_to = if named.is_some() { " in its name" } else { "" };
+    if let (None, Some(named)) = (options.fps, named) {
+        decisions.push(format!(
+            "{} frames a second, as the file's name says",
+            shown(named)
+        ));
+    }
+    let stated = stated.or(named);
     if let (Some(given), Some(stated)) = (options.fps, stated) {
         let of_file = shown(stated);
         if !agree(given, stated) {
@@ -40,7 +87,7 @@ pub(super) fn decide(
                 let factor = given / stated;
                 return Err(file.unusable(
                     &format!(
-                        "states {of_file} frames a second, not {given}: at {given} its motion \
+                        "states {of_file} frames a second{where_to}, not {given}: at {given} its motion \
                          would be {factor:.2} times as fast"
                     ),
                     "leave fps (--fps) away; if the file is wrong, import it with --fps and \
@@ -48,11 +95,11 @@ pub(super) fn decide(
                 ));
             }
             decisions.push(format!(
-                "{given} frames a second by --force-fps, against the {of_file} that the file states"
+                "{given} frames a second by --force-fps, against the {of_file} that the file states{where_to}"
             ));
-        } else if (given / stated - 1.0).abs() > NOTICED {
+        } else if differ(given, stated) {
             decisions.push(format!(
-                "{given} frames a second as given; the file states {of_file}, the same but for rounding"
+                "{given} frames a second as given; the file states {of_file}{where_to}, the same but for rounding"
             ));
         }
     }
@@ -113,6 +160,49 @@ mod tests {
             }
             assert_eq!(decided(Some(given), Some(stated), true), Ok(given));
         }
+    }
+
+    #[test]
+    fn a_rate_in_the_name_is_stated() {
+        for (name, expected) in [
+            ("walk_60Hz.csv", Some(60.0)),
+            ("walk_30fps.csv", Some(30.0)),
+            ("g1_v2_500Hz.csv.gz", Some(500.0)),
+            ("walk 29.97 FPS take 2.csv", Some(29.97)),
+            ("120hz.bvh", Some(120.0)),
+            ("walk_fps50.csv", Some(50.0)),
+            ("walk_60.csv", None),
+            ("cadence_2Hz.csv", None),
+            ("30fps_of_120fps.csv", None),
+            ("walk_60hzx.csv", None),
+            ("chatz3.csv", None),
+        ] {
+            assert_eq!(in_name(Path::new(name)), expected, "{name}");
+        }
+        let decided = |given, stated| {
+            let file = File {
+                path: Path::new("walk_60Hz.csv"),
+                bytes: b"",
+            };
+            let options = Options {
+                fps: given,
+                ..Options::default()
+            };
+            let mut decisions = Vec::new();
+            let fps = decide(&file, &options, stated, &mut decisions);
+            (fps.map_err(|e| e.to_string()), decisions)
+        };
+        let (fps, told) = decided(None, None);
+        assert_eq!(fps, Ok(60.0));
+        assert_eq!(told, ["60 frames a second, as the file's name says"]);
+        let message = decided(Some(30.0), None).0.unwrap_err();
+        assert!(
+            message.contains("states 60 frames a second in its name, not 30"),
+            "{message}"
+        );
+        assert_eq!(decided(Some(60.0), None), (Ok(60.0), Vec::new()));
+        // What the file itself says stands.
+        assert_eq!(decided(None, Some(50.0)), (Ok(50.0), Vec::new()));
     }
 
     #[test]

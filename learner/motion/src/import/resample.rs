@@ -4,7 +4,7 @@
 
 use super::file::File;
 use super::joints::DROPPED;
-use super::{Row, bounds, calibration, ground, lean};
+use super::{Row, Source, bounds, calibration, ground, lean};
 use crate::clip::{Clip, FRAME_SECONDS};
 use crate::error::MotionError;
 use g1::{JOINTS, RobotState};
@@ -12,24 +12,28 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use retarget::signal;
 use std::path::Path;
 
-/// The clip of a robot's rows at some rate, named after the file; adds what was done to `decisions`.
+/// The clip of a robot's rows at some rate, named after the file, and what was wrong with them; adds what was done to
+/// `decisions`.
 pub(super) fn clip(
     file: &File<'_>,
     rows: &[Row],
     fps: f64,
     on_ground: bool,
     decisions: &mut Vec<String>,
-) -> Result<Clip, MotionError> {
+) -> Result<(Clip, Source), MotionError> {
     check_duration(file, rows.len(), fps)?;
     let rows = &rows[calibration::of_robot(rows, fps, decisions)..];
     check_duration(file, rows.len(), fps)?;
     let mut frames = resampled(rows, fps);
     lean::into_pelvis(&mut frames, decisions);
-    bounds::hold(&mut frames, decisions);
-    if on_ground {
-        ground::put(&mut frames, decisions);
-    }
-    Ok(finished(file.path, &frames))
+    let jumps = bounds::hold(&mut frames, decisions);
+    // Without grounding nothing hides the ground: the clip itself shows it.
+    let floor = if on_ground {
+        ground::put(&mut frames, decisions)
+    } else {
+        None
+    };
+    Ok((finished(file.path, &frames), Source { jumps, floor }))
 }
 
 /// Refuses what is too short to have velocities.

@@ -21,7 +21,7 @@ fn clip_of(rows: &[Row], name: &str, fps: f64, ground: bool) -> Result<Clip, Mot
         path: Path::new(name),
         bytes: b"",
     };
-    clip(&file, rows, fps, ground, &mut Vec::new())
+    clip(&file, rows, fps, ground, &mut Vec::new()).map(|(clip, _)| clip)
 }
 
 /// Turning left at 0.5 rad/s on a circle at 1 m/s, left knee opening at 2 rad/s, 7 cm too low.

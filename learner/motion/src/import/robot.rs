@@ -178,9 +178,8 @@ pub(super) fn gmr(
     let pickle = Pickle::read(file, file.bytes)?;
     let part = |name: &str| {
         pickle.array(&[name]).ok_or_else(|| {
-            let keys = wording::line(&pickle.keys().join(", "));
             file.unusable(
-                &format!("has no array {name} (but {keys})"),
+                &format!("has no array {name} (but {})", pickle.holds()),
                 "expected fps, root_pos, root_rot, dof_pos",
             )
         })

@@ -7,11 +7,11 @@ mod kind;
 pub use kind::Kind;
 
 use crate::clip::FRAME_SECONDS;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display};
 
 /// Whether a clip can be trained on all the same.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Severity {
     /// Worth a look; a policy can learn from it.
@@ -21,7 +21,7 @@ pub enum Severity {
 }
 
 /// The frames of a defect, counted from 1 at 50 Hz.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Frames {
     /// The first.
     pub first: usize,
@@ -95,6 +95,8 @@ pub struct Defect {
     pub value: f64,
     /// Unit of `value`.
     pub unit: &'static str,
+    /// Whether the source had it and import mended it in the clip: only the account beside the clip still knows.
+    pub of_source: bool,
     /// All that in words, but the remedy.
     pub says: String,
     /// What to do.
@@ -131,6 +133,7 @@ impl Defect {
             frames: Frames::all(frames),
             value,
             unit,
+            of_source: false,
             says,
             remedy: kind.remedy(),
         }
@@ -145,6 +148,40 @@ impl Defect {
 impl Display for Defect {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.says)
+    }
+}
+
+/// A defect of a source as an account keeps it: unit and remedy are those of its kind.
+#[derive(Debug, Deserialize)]
+pub(super) struct Kept {
+    kind: Kind,
+    severity: Severity,
+    #[serde(default)]
+    joints: Vec<String>,
+    frames: Frames,
+    value: f64,
+    says: String,
+}
+
+impl Kept {
+    /// The defect; `None` if its frames are none of a clip of so many.
+    pub(super) fn defect(self, frames: usize) -> Option<Defect> {
+        let Frames {
+            first, last, worst, ..
+        } = self.frames;
+        let within = (1..=worst).contains(&first) && (worst..=frames).contains(&last);
+        let unit = if self.kind == Kind::Drift { "m" } else { "rad" };
+        within.then_some(Defect {
+            kind: self.kind,
+            severity: self.severity,
+            joints: self.joints,
+            frames: self.frames,
+            value: self.value,
+            unit,
+            of_source: true,
+            says: self.says,
+            remedy: self.kind.remedy(),
+        })
     }
 }
 

@@ -7,7 +7,10 @@ mod ground;
 mod joints;
 mod moves;
 mod posture;
+mod source;
 mod way;
+
+pub(crate) use source::of as of_source;
 
 use super::defect::{Defect, Kind, Severity};
 use super::{Account, Feet, Quality};
@@ -34,7 +37,8 @@ impl Examination {
     pub fn of(imported: &Imported, file: &Path) -> Self {
         let quality = Quality::of(&imported.clip);
         let account = Account::of(imported, file);
-        let defects = defects(&imported.clip, &quality, &account);
+        let source = of_source(imported, file);
+        let defects = all(&imported.clip, &quality, &account, &source);
         Self {
             quality,
             account,
@@ -48,6 +52,16 @@ impl Examination {
 /// # Panics
 /// If the clip has no frames.
 pub fn defects(clip: &Clip, quality: &Quality, account: &Account) -> Vec<Defect> {
+    all(clip, quality, account, &[])
+}
+
+/// The same with those that its source had ([`of_source`]).
+pub(crate) fn all(
+    clip: &Clip,
+    quality: &Quality,
+    account: &Account,
+    source: &[Defect],
+) -> Vec<Defect> {
     let feet: Vec<Feet> = clip.frames.iter().map(Feet::of).collect();
     let mut found = Vec::new();
     if quality.seconds < SHORTEST {
@@ -80,12 +94,13 @@ pub fn defects(clip: &Clip, quality: &Quality, account: &Account) -> Vec<Defect>
             Severity::Odd,
             quality.frames,
             (0.0, ""),
-            format!("the account of its retargeting is not this clip's: {why}"),
+            format!("the account beside it is not this clip's: {why}"),
         )),
     });
     found.extend(way::backward(clip, &feet));
     found.extend(lies);
     found.extend(ground);
+    source::join(&mut found, source, down);
     // A stable sort: within a severity the order above stays, from causes to what follows from them.
     found.sort_by_key(|defect| std::cmp::Reverse(defect.severity));
     found

@@ -12,7 +12,7 @@ use motion::quality::{Defect, Severity, paragraph, severity};
 use serde_json::{Value, json};
 use wording::count;
 
-use super::super::files::Source;
+use super::super::files::{Source, shown};
 use super::super::table;
 use crate::console;
 
@@ -101,7 +101,7 @@ pub(super) fn show(
 
 /// Where clips are, how fast it went, what to do next.
 fn close(out: &mut impl Write, written: &[&Written], folder: &Path, verbose: bool) -> Result<()> {
-    let folder = folder.display();
+    let folder = shown(folder);
     let frames = |clip: &&Written| clip.imported.clip.frames.len();
     let frames: usize = written.iter().map(frames).sum();
     let seconds: f64 = written.iter().map(|clip| clip.seconds).sum();

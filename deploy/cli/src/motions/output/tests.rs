@@ -111,6 +111,10 @@ fn what_somebody_else_wrote_is_never_written_over() {
         let source = source.display();
         format!("{{\"written_by\": \"ampco motions import\", \"source\": \"{source}\"}}")
     };
+    // The report of its mirror image is of another clip.
+    let image = written(&source).replace("motions import", "motions mirror");
+    file(report.clone(), &image);
+    refused(&out, &[&source], &["a.json is of another clip (mirrored "]);
     file(report.clone(), &written(&root.join("b.bvh")));
     refused(&out, &[&source], &["a.json is of another clip (from "]);
     file(report, &written(&source));
@@ -201,4 +205,32 @@ fn clips_in_the_folder_that_they_were_written_to_are_told() {
         &file(out.join("a.bvh"), "# ampco motion\n"),
         out
     ));
+}
+
+#[test]
+fn what_a_killed_command_left_half_written_goes_and_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path();
+    let mut ended = std::process::Command::new("true").spawn().unwrap();
+    let gone = ended.id();
+    ended.wait().unwrap();
+    let draft = file(out.join(format!(".w10.json.{gone}.new")), "{");
+    let other = file(out.join(format!(".notes.{gone}.new")), "mine");
+    let source = file(out.join("in/walk.bvh"), "HIERARCHY");
+    // Refused, it changes nothing.
+    let clip = file(out.join("walk.csv"), "mine");
+    refused(out, &[&source], &["not written by this command"]);
+    assert!(draft.exists());
+    fs::remove_file(clip).unwrap();
+    claimed(out, &[&source]).unwrap();
+    assert!(!draft.exists() && other.exists());
+}
+
+#[test]
+fn a_pipe_is_no_clip_that_was_written_here() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("a.csv");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.unwrap().success());
+    assert!(!is_output(&pipe, folder.path()));
 }

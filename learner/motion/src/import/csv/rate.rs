@@ -5,7 +5,7 @@
 use super::Line;
 use crate::error::MotionError;
 use crate::import::file::File;
-use crate::import::rate::{agree, shown};
+use crate::import::rate::{agree, differ, shown};
 
 /// A rate and where the table states it.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +15,7 @@ pub(in crate::import) struct Stated {
 }
 
 /// The one rate that a table states, if it states any; under a user's word that stands above the file's,
-/// the first that contradicts it.
+/// the first that contradicts it. Of those that differ by rounding the first is taken, which is said.
 ///
 /// # Errors
 /// Two that differ.
@@ -23,16 +23,19 @@ pub(super) fn one(
     file: &File<'_>,
     stated: &[Stated],
     above: Option<f64>,
+    decisions: &mut Vec<String>,
 ) -> Result<Option<f64>, MotionError> {
     let first = stated.first();
     if let Some(above) = above {
         let other = stated.iter().find(|s| !agree(s.fps, above)).or(first);
         return Ok(other.map(|stated| stated.fps));
     }
-    for pair in stated.windows(2) {
-        let [a, b] = pair else { continue };
+    let Some(a) = first else {
+        return Ok(None);
+    };
+    for b in &stated[1..] {
+        let (f, g) = (shown(a.fps), shown(b.fps));
         if !agree(a.fps, b.fps) {
-            let (f, g) = (shown(a.fps), shown(b.fps));
             return Err(file.unusable(
                 &format!(
                     "states two rates: {f} frames a second in {}, {g} in {}",
@@ -41,8 +44,14 @@ pub(super) fn one(
                 "remove the wrong one, or import it with --fps and --force-fps",
             ));
         }
+        if differ(a.fps, b.fps) {
+            decisions.push(format!(
+                "{f} frames a second as {} states; passed over: {g} in {}, the same but for rounding",
+                a.place, b.place
+            ));
+        }
     }
-    Ok(first.map(|stated| stated.fps))
+    Ok(Some(a.fps))
 }
 
 /// The rates that comments state: `# fps = 50`, `# frame rate: 50 Hz`, `# dt = 0.02 s`.

@@ -199,6 +199,33 @@ impl Pickle {
             .collect()
     }
 
+    /// What the whole is, for messages: its keys, or what it is that has none.
+    pub(in crate::import) fn holds(&self) -> String {
+        let keys = self.keys();
+        if !keys.is_empty() {
+            return wording::line(&keys.join(", "));
+        }
+        let of = |what: &str, count: usize| match count {
+            0 => format!("an empty {what}"),
+            _ => format!("a {what} of {}", wording::count(count, "value")),
+        };
+        match self.root() {
+            Value::None => "None".into(),
+            Value::Number(number) => format!("the number {number}"),
+            Value::Text(_) => "a text".into(),
+            Value::Bytes(_) => "bytes".into(),
+            Value::List(items) => of("list", items.len()),
+            Value::Tuple(items) => of("tuple", items.len()),
+            Value::Dict(entries) if entries.is_empty() => of("dictionary", 0),
+            Value::Dict(entries) => of("dictionary without names", entries.len()),
+            Value::Array(array) => format!("an array of the shape {:?}", array.shape),
+            Value::Words(words) => of("array of texts", words.len()),
+            Value::Type(..) | Value::Name(_) | Value::Wrapper | Value::Mark => {
+                "nothing that is data".into()
+            }
+        }
+    }
+
     /// Whether the whole has a key.
     pub(in crate::import) fn has(&self, key: &str) -> bool {
         get(&self.values, self.root, key).is_some()

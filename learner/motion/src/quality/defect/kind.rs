@@ -2,16 +2,18 @@
 //!
 //! Separate because it is a table.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What is wrong. One defect of a kind per clip: its joints and frames are in the defect.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
     /// Next to no frames.
     Short,
     /// The pelvis is elsewhere, or turned, from one frame to the next.
     Teleport,
+    /// Joints of the source that outran their motors, before import slowed them.
+    Jump,
     /// Joints that accelerate like nothing alive.
     Acceleration,
     /// Joints that outrun their motor.
@@ -50,6 +52,9 @@ impl Kind {
             }
             Self::Acceleration => {
                 "repair or cut the frames; if there are many, look at the file's rate, units (degrees?) and joint order"
+            }
+            Self::Jump => {
+                "repair or cut the frames, or give the rate at which it was recorded (--fps); if there are many, look at units (degrees?) and joint order"
             }
             Self::Motor => {
                 "give the rate at which it was recorded (--fps), or slow the motion down"

@@ -15,11 +15,13 @@ const RUN: f64 = 0.248;
 /// Acceleration of a limb, or of a turning pelvis, that nothing alive makes, rad/s²: from rest to the top speed of the
 /// robot's knee, 20 rad/s, within a frame, where a muscle takes more than two to build up its force. It is a step of 23°.
 /// The fastest built-in walk peaks at 850, captures that retarget well at 520.
-const LIMB: f64 = 1000.0;
+pub(super) const LIMB: f64 = 1000.0;
 /// The same in two successive frames, one against the other, rad/s²: 8° a frame² there and back. Going on like that is a
 /// shake at 25 Hz by 2° to either side (4·0.035 rad in (0.02 s)²), where tremor is at 8 to 12 Hz and below a degree.
 /// Built-in gaits and captures that retarget well stay below 280.
 const SHAKE: f64 = 350.0;
+/// The same that is no glitch, rad/s²: twice a shake, a joint that is 16° elsewhere from one frame to the next.
+pub(super) const JOLT: f64 = 700.0;
 /// Share of a clip that may shake and is only odd: a glitch in a long take.
 const GLITCHES: f64 = 0.01;
 /// Frames apart that belong to one jump.
@@ -103,13 +105,13 @@ fn jumps(flags: &[bool], steps: &[Vector3<f64>], unit: &'static str) -> Vec<Jump
         .map(|group| {
             let (first, last) = (group[0].max(1), group[group.len() - 1]);
             // Step i − 1 leads to frame i; the step out of the last flagged frame belongs to the jump too.
-            let into = (first..=(last + 1).min(steps.len()))
+            let end = farthest(first, (last + 1).min(steps.len()), steps);
+            let into = (first..=end)
                 .max_by(|&i, &j| steps[i - 1].norm().total_cmp(&steps[j - 1].norm()))
                 .expect("a jump has a step");
             let most = steps[into - 1].norm();
             let great = |&i: &usize| 2.0 * steps[i - 1].norm() > most;
             let before = (first..into).rev().take_while(great).count();
-            let end = (last + 1).min(steps.len());
             let after = (into + 1..=end).take_while(great).count();
             let way: Vector3<f64> = steps[into - 1 - before..into + after].iter().sum();
             Jump {
@@ -126,14 +128,28 @@ fn jumps(flags: &[bool], steps: &[Vector3<f64>], unit: &'static str) -> Vec<Jump
         .collect()
 }
 
+/// The frame from `first` to `last` that is farthest from the one before `first`: of what goes there and back, there.
+fn farthest(first: usize, last: usize, steps: &[Vector3<f64>]) -> usize {
+    let (mut way, mut most, mut at) = (Vector3::zeros(), 0.0, first);
+    for i in first..=last {
+        way += steps[i - 1];
+        if way.norm() > most {
+            (most, at) = (way.norm(), i);
+        }
+    }
+    at
+}
+
 /// Joints that accelerate like nothing alive.
 pub(super) fn acceleration(frames: &[RobotState]) -> Option<Defect> {
     let mut worst_at = vec![0.0_f64; frames.len()];
     let mut joints: Vec<(usize, f64)> = Vec::new();
+    let mut jolted = false;
     for j in 0..JOINTS {
         let angle = |f: &RobotState| Vector3::x() * f64::from(f.joint_positions[j]);
         let steps = differences(frames, |a, b| angle(b) - angle(a));
         let flags = jerked(&steps, LIMB, SHAKE);
+        jolted |= jerked(&steps, LIMB, JOLT).contains(&true);
         let mut most: f64 = 0.0;
         for i in (0..frames.len()).filter(|&i| flags[i]) {
             let acceleration = (steps[i] - steps[i - 1]).norm() / DT2;
@@ -165,7 +181,7 @@ pub(super) fn acceleration(frames: &[RobotState]) -> Option<Defect> {
         (most * DT2).to_degrees(),
         few(&names)
     );
-    let severity = if most > LIMB || bad.len() as f64 > GLITCHES * frames.len() as f64 {
+    let severity = if jolted || bad.len() as f64 > GLITCHES * frames.len() as f64 {
         Severity::Unfit
     } else {
         Severity::Odd

@@ -5,6 +5,7 @@ mod ground;
 mod joints;
 mod moves;
 mod sound;
+mod sources;
 mod whole;
 
 use super::super::severity;

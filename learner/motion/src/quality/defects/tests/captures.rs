@@ -86,6 +86,16 @@ fn a_left_handed_capture_is_unfit_and_says_why() {
 }
 
 #[test]
+fn a_capture_whose_floor_rises_or_sinks_is_unfit() {
+    for by in [0.2, -0.2] {
+        let defects = examined(&walk(|i, p| p + Vector3::z() * (by * i as f32 / 150.0)));
+        let drift = defects.iter().find(|defect| defect.kind == Kind::Drift);
+        let drift = drift.unwrap_or_else(|| panic!("{defects:?}"));
+        assert_eq!(drift.severity, Severity::Unfit, "{drift:?}");
+    }
+}
+
+#[test]
 fn a_capture_that_is_moved_by_five_metres_teleports() {
     let moved = walk(|i, p| if i < 80 { p } else { p + Vector3::y() * 5.0 });
     let defects = examined(&moved);

@@ -76,6 +76,7 @@ fn bones_far_off_are_named_by_the_account() {
             unreached: 0.0,
             carried: 0.0,
             lifted: 0.0,
+            floor: None,
             at_limit: Vec::new(),
             at_speed: Vec::new(),
         };

@@ -61,6 +61,37 @@ fn a_teleport_is_named_with_its_frame() {
 }
 
 #[test]
+fn a_pelvis_that_is_elsewhere_for_a_frame_was_as_far_away_as_it_was() {
+    // There in frame 101 (and in 103), and back: 5 m, not the 4 cm between the frames around it.
+    for frames in [1, 3] {
+        let mut clip = walk(1.0, 4.0);
+        for frame in &mut clip.frames[100..100 + frames] {
+            frame.position.y += 5.0;
+        }
+        let defect = found(&clip, Kind::Teleport);
+        assert_eq!((defect.frames.worst, defect.frames.count), (101, 1));
+        assert!((defect.value - 5.0).abs() < 0.05, "{defect:?}");
+        assert!(defect.says.contains("m in one frame"), "{}", defect.says);
+    }
+}
+
+#[test]
+fn a_larger_jump_of_a_joint_is_never_milder() {
+    // In one of 500 frames; 0.2 rad are 500 rad/s² to and fro, 0.3 rad 750, 0.38 rad 950, 0.5 rad 1250.
+    let knee = index_of("left_knee_joint").unwrap();
+    let severity = |by: f32| {
+        let clip = standing(500, |i, frame| {
+            if i >= 250 {
+                frame.joint_positions[knee] += by;
+            }
+        });
+        found(&clip, Kind::Acceleration).severity
+    };
+    assert_eq!(severity(0.2), Severity::Odd);
+    assert_eq!([0.3, 0.38, 0.5, 1.4].map(severity), [Severity::Unfit; 4]);
+}
+
+#[test]
 fn limbs_that_nothing_alive_moves_are_named() {
     // A snap there and back: 0.6 rad in a frame are 1500 rad/s² at its ends, −3000 between.
     let hip = index_of("left_hip_pitch_joint").unwrap();
