@@ -45,8 +45,8 @@ pub(super) fn read(
     let motion = if JOINTS.iter().any(|name| pickle.has(name)) {
         robot(file, &pickle, by_user, decisions)?
     } else {
-        let (poses, _) = part(file, &pickle, &["pose_aa"])?;
-        let (place, name) = part(file, &pickle, &HUMAN_PLACE)?;
+        let (poses, _) = pickle.part(file, &["pose_aa"], EXPECTED)?;
+        let (place, name) = pickle.part(file, &HUMAN_PLACE, EXPECTED)?;
         decisions.push("a human of SMPL".into());
         Motion::Human(amass::of_poses(
             file,
@@ -84,12 +84,12 @@ fn choose(
             "expected root_trans_offset, root_rot and dof, or pose_aa and trans_orig, under a clip's name",
         )),
         [only] => {
-            decisions.push(format!("clip {}", shown(only)));
+            decisions.push(format!("clip {}", wording::line(only)));
             pickle.descend(only);
             Ok(())
         }
         several => {
-            let names: Vec<String> = several.iter().take(SHOWN).map(|name| shown(name)).collect();
+            let names: Vec<String> = several.iter().take(SHOWN).map(|name| wording::line(name)).collect();
             Err(file.unusable(
                 &format!("holds {} clips ({}, …)", several.len(), names.join(", ")),
                 "import one a file: python -c \"import joblib, sys; [joblib.dump({k: v}, f'clip{i}.pkl') for \
@@ -99,34 +99,8 @@ fn choose(
     }
 }
 
-/// A clip's name, which may be anything, as part of a line.
-fn shown(name: &str) -> String {
-    const LONGEST: usize = 80;
-    name.chars()
-        .take(LONGEST)
-        .flat_map(char::escape_debug)
-        .collect()
-}
-
-fn part<'n>(
-    file: &File<'_>,
-    pickle: &Pickle,
-    names: &[&'n str],
-) -> Result<(Array, &'n str), MotionError> {
-    let found = names
-        .iter()
-        .find_map(|&name| Some((pickle.array(&[name])?, name)));
-    found.ok_or_else(|| {
-        file.unusable(
-            &format!(
-                "has no array {} (but {})",
-                names.join(" or "),
-                pickle.holds()
-            ),
-            "expected root_trans_offset, root_rot and dof, or pose_aa and trans_orig",
-        )
-    })
-}
+/// What a pickle of these projects has.
+const EXPECTED: &str = "expected root_trans_offset, root_rot and dof, or pose_aa and trans_orig";
 
 fn robot(
     file: &File<'_>,
@@ -134,9 +108,9 @@ fn robot(
     by_user: bool,
     decisions: &mut Vec<String>,
 ) -> Result<Motion, MotionError> {
-    let (place, place_name) = part(file, pickle, &PLACE)?;
-    let (turn, turn_name) = part(file, pickle, &["root_rot"])?;
-    let (angles, name) = part(file, pickle, &JOINTS)?;
+    let (place, place_name) = pickle.part(file, &PLACE, EXPECTED)?;
+    let (turn, turn_name) = pickle.part(file, &["root_rot"], EXPECTED)?;
+    let (angles, name) = pickle.part(file, &JOINTS, EXPECTED)?;
     let poses = pickle.array(&["pose_aa"]);
     let poses = poses.filter(|poses| fits(poses, &angles));
     let by_axes = poses.as_ref().and_then(|poses| by_axes(poses, &angles));

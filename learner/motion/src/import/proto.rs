@@ -112,8 +112,8 @@ pub(super) fn read(
         None => Pickle::read(file, file.bytes)?,
     };
     let fps = rate(file, &pickle)?;
-    let (places, name) = part(file, &pickle, &BODIES)?;
-    let (turns, turns_name) = part(file, &pickle, &TURNS)?;
+    let (places, name) = pickle.part(file, &BODIES, EXPECTED)?;
+    let (turns, turns_name) = pickle.part(file, &TURNS, EXPECTED)?;
     let angles = ANGLES
         .iter()
         .find_map(|&name| Some((pickle.array(&[name])?, name)));
@@ -190,21 +190,8 @@ fn rate(file: &File<'_>, pickle: &Pickle) -> Result<Option<f64>, MotionError> {
     Ok(stated.0.or(stated.1))
 }
 
-fn part<'n>(
-    file: &File<'_>,
-    pickle: &Pickle,
-    names: &[&'n str],
-) -> Result<(Array, &'n str), MotionError> {
-    let found = names
-        .iter()
-        .find_map(|&name| Some((pickle.array(&[name])?, name)));
-    found.ok_or_else(|| {
-        file.unusable(
-            &format!("has no array {} (but {})", names[0], pickle.holds()),
-            "expected fps, dof_pos, rigid_body_pos and rigid_body_rot",
-        )
-    })
-}
+/// What a motion of ProtoMotions has.
+const EXPECTED: &str = "expected fps, dof_pos, rigid_body_pos and rigid_body_rot";
 
 /// How far the robot's feet are from the nearest bodies of the file, m.
 fn feet_gap(base: &Isometry3<f64>, joints: &[f64; g1::JOINTS], places: &[f64]) -> f64 {

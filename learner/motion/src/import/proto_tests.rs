@@ -184,7 +184,7 @@ fn libraries_of_many_and_broken_files_are_refused() {
     assert!(
         told(&few)
             .unwrap_err()
-            .contains("rigid_body_rot (but fps, gts)")
+            .contains("rigid_body_rot or grs (but fps, gts)")
     );
     let flat = Archive::new()
         .value("fps", b"K\x32")

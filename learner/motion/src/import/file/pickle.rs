@@ -199,6 +199,22 @@ impl Pickle {
             .collect()
     }
 
+    /// The array under the first of the names that has one, and that name; `remedy` says what was expected.
+    pub(in crate::import) fn part<'n>(
+        &self,
+        file: &File<'_>,
+        names: &[&'n str],
+        remedy: &str,
+    ) -> Result<(Array, &'n str), MotionError> {
+        let found = names
+            .iter()
+            .find_map(|&name| Some((self.array(&[name])?, name)));
+        found.ok_or_else(|| {
+            let problem = format!("has no array {} (but {})", names.join(" or "), self.holds());
+            file.unusable(&problem, remedy)
+        })
+    }
+
     /// What the whole is, for messages: its keys, or what it is that has none.
     pub(in crate::import) fn holds(&self) -> String {
         let keys = self.keys();
