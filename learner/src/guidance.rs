@@ -5,10 +5,9 @@
 
 use std::time::{Duration, Instant};
 
-use ampco::{Granularity, Rule};
+use ampco::{Numbers, RuleError, Weighting};
 use anyhow::{Context, Result};
 use protocol::{Answer, Directive, DirectiveSubscriber};
-use serde::{Deserialize, Serialize};
 use tracing::{info, warn};
 
 /// An answer takes milliseconds; after so long a report is sent again. It is answered alike, however
@@ -18,19 +17,9 @@ const ASK_AGAIN: Duration = Duration::from_millis(300);
 /// How the next batch is paid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Guide {
-    pub(crate) rule: Rule,
-    pub(crate) granularity: Granularity,
+    pub(crate) weighting: Weighting,
     /// The directive it comes from; `None` before the first.
     pub(crate) directive: Option<Directive>,
-}
-
-/// What is kept of a guide in a checkpoint.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Remembered {
-    rule: u32,
-    first: f32,
-    second: f32,
-    granularity: u32,
 }
 
 /// Follows the scheduler.
@@ -40,26 +29,27 @@ pub(crate) struct Guidance {
     /// How long an answer is waited for; zero where none is.
     patience: Duration,
     away: bool,
+    /// The guide comes from the scheduler, in this life of the learner or an earlier one.
+    told: bool,
     guide: Guide,
 }
 
 impl Guidance {
-    /// Begins with the rule that holds before any report.
+    /// Begins with the weighting that holds before any report.
     pub(crate) fn new(
         directives: DirectiveSubscriber,
         learner: u64,
         patience: Duration,
-        rule: Rule,
-        granularity: Granularity,
+        weighting: Weighting,
     ) -> Self {
         Self {
             directives,
             learner,
             patience,
             away: false,
+            told: false,
             guide: Guide {
-                rule,
-                granularity,
+                weighting,
                 directive: None,
             },
         }
@@ -129,27 +119,15 @@ impl Guidance {
         self.away
     }
 
-    pub(crate) fn remember(&self) -> Option<Remembered> {
-        self.guide.directive.map(|directive| Remembered {
-            rule: directive.rule,
-            first: directive.first,
-            second: directive.second,
-            granularity: directive.granularity,
-        })
+    /// What the scheduler has said last, for a checkpoint.
+    pub(crate) fn remember(&self) -> Option<Weighting> {
+        self.told.then_some(self.guide.weighting)
     }
 
     /// Takes up what a checkpoint remembers, until the scheduler speaks.
-    pub(crate) fn recall(&mut self, remembered: Remembered) -> Result<()> {
-        let directive = Directive {
-            rule: remembered.rule,
-            first: remembered.first,
-            second: remembered.second,
-            granularity: remembered.granularity,
-            ..Directive::default()
-        };
-        self.guide.rule = directive.rule()?;
-        self.guide.granularity = directive.granularity()?;
-        Ok(())
+    pub(crate) fn recall(&mut self, weighting: Weighting) {
+        self.told = true;
+        self.guide.weighting = weighting;
     }
 
     fn follow(&mut self, directive: Directive) -> Result<()> {
@@ -158,13 +136,21 @@ impl Guidance {
             let (lower, upper) = directive.bounds().unzip();
             info!(phase = directive.phase, switched_at = ?directive.switched_at(), ?lower, ?upper, "phase");
         }
+        self.told = true;
         self.guide = Guide {
-            rule: directive.rule().context("a directive of the scheduler")?,
-            granularity: directive
-                .granularity()
-                .context("a directive of the scheduler")?,
+            weighting: weighting(&directive).context("a directive of the scheduler")?,
             directive: Some(directive),
         };
         Ok(())
     }
+}
+
+/// What a directive puts in force, checked.
+fn weighting(directive: &Directive) -> Result<Weighting, RuleError> {
+    Weighting::try_from(Numbers {
+        rule: directive.rule,
+        first: directive.first,
+        second: directive.second,
+        granularity: directive.granularity,
+    })
 }

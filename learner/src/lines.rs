@@ -53,11 +53,10 @@ impl Lines {
             directives,
             node.incarnation(),
             patience,
-            schedule.rule(),
-            schedule.granularity(),
+            schedule.weighting(),
         );
         if let Some(remembered) = state.remembered {
-            guidance.recall(remembered)?;
+            guidance.recall(remembered);
         }
         let mut journal = Journal::open(&folder.logs(), "learner", config.run.journal)?;
         journal.write(|| journal::Entry::Begun(node.incarnation(), state.iteration));
@@ -82,7 +81,7 @@ impl Lines {
         };
         if let Some(report) = state.last_report {
             // The scheduler answers it from the log; what it knew of later iterations is void.
-            lines.rewards.send(report.message())?;
+            lines.rewards.send(report)?;
         }
         Ok(lines)
     }
@@ -132,7 +131,7 @@ impl Lines {
     /// Tells the scheduler how iteration `state.iteration` was paid.
     pub(crate) fn report(&mut self, state: &State) -> Result<()> {
         if let Some(report) = state.last_report {
-            self.rewards.send(report.message())?;
+            self.rewards.send(report)?;
         }
         Ok(())
     }
@@ -141,7 +140,7 @@ impl Lines {
     pub(crate) fn guide(&mut self, state: &mut State) -> Result<Guide> {
         let (rewards, report) = (&mut self.rewards, state.last_report);
         let report_again = || match report {
-            Some(report) => Ok(rewards.send(report.message())?),
+            Some(report) => Ok(rewards.send(report)?),
             None => Ok(()),
         };
         let guide = self.guidance.after(state.reported(), report_again)?;

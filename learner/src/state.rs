@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use std::time::Instant;
 
 use amp::{Batch, IterationReport, Learning, LearningError, PpoConfig};
+use ampco::Weighting;
 use anyhow::{Context, Result};
 use protocol::RewardReport;
 use rand::{RngExt, SeedableRng};
@@ -16,7 +17,7 @@ use tracing::{info, warn};
 
 use crate::config::LearnerConfig;
 use crate::earned::Earned;
-use crate::guidance::{Guide, Remembered};
+use crate::guidance::Guide;
 use crate::robot;
 
 /// This shell's own share of a checkpoint.
@@ -36,8 +37,8 @@ pub(crate) struct State {
     /// Seconds of learning before this start.
     pub(crate) seconds_before: f64,
     /// How the last iteration was paid, to be reported again after a resume.
-    pub(crate) last_report: Option<StoredReport>,
-    pub(crate) remembered: Option<Remembered>,
+    pub(crate) last_report: Option<RewardReport>,
+    pub(crate) remembered: Option<Weighting>,
     generator: Pcg64Mcg,
     /// The iteration of the newest checkpoint; writing it again would lose the actors' share.
     saved: Option<u64>,
@@ -45,27 +46,11 @@ pub(crate) struct State {
     earned: Earned,
 }
 
-/// A reward report as a checkpoint keeps it.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(crate) struct StoredReport {
-    iteration: u64,
-    samples: u64,
-    style_mean: f64,
-    style_std: f64,
-    style_min: f64,
-    style_max: f64,
-    task_mean: f64,
-    /// None ended, or it is a checkpoint of a program that did not measure it.
-    episode_share: Option<f64>,
-    /// `None` in a checkpoint of a program that did not measure it.
-    task_std: Option<f64>,
-}
-
 #[derive(Serialize, Deserialize)]
 struct Shell {
     seconds: f64,
-    last_report: Option<StoredReport>,
-    remembered: Option<Remembered>,
+    last_report: Option<RewardReport>,
+    remembered: Option<Weighting>,
     generator: Pcg64Mcg,
     #[serde(default)]
     earned: Earned,
@@ -182,15 +167,16 @@ impl State {
                 }
             }
         };
+        let Weighting { rule, granularity } = guide.weighting;
         let report = self
             .learning
-            .iterate(batch, &mut experts, guide.rule, guide.granularity);
+            .iterate(batch, &mut experts, rule, granularity);
         if let Ok(report) = &report {
             // What an easier task paid before would pass for skill.
             if self.samples() as f64 > config.settled {
                 self.earned.add(report, batch.robots());
             }
-            self.last_report = Some(StoredReport {
+            self.last_report = Some(RewardReport {
                 iteration: self.iteration,
                 samples: batch.rows() as u64,
                 style_mean: report.style_mean,
@@ -198,8 +184,10 @@ impl State {
                 style_min: report.style_min,
                 style_max: report.style_max,
                 task_mean: report.task_mean,
-                episode_share: config.episode_share(report),
-                task_std: Some(report.task_std),
+                task_std: report.task_std,
+                episode_share: config.episode_share(report).unwrap_or(f64::NAN),
+                // Filled when it is sent.
+                ..RewardReport::default()
             });
         }
         report
@@ -268,24 +256,6 @@ impl State {
         self.earned = earned;
         self.saved = Some(self.iteration);
         checkpoints.prune(config.run.keep_checkpoints)
-    }
-}
-
-impl StoredReport {
-    pub(crate) fn message(&self) -> RewardReport {
-        RewardReport {
-            iteration: self.iteration,
-            samples: self.samples,
-            style_mean: self.style_mean,
-            style_std: self.style_std,
-            style_min: self.style_min,
-            style_max: self.style_max,
-            task_mean: self.task_mean,
-            episode_share: self.episode_share.unwrap_or(f64::NAN),
-            task_std: self.task_std.unwrap_or(f64::NAN),
-            // Filled when it is sent.
-            ..RewardReport::default()
-        }
     }
 }
 

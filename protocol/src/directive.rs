@@ -1,11 +1,10 @@
 //! Directives: the scheduler's newest decision, as plain numbers.
 //!
 //! Separate because a Rust enum must not cross shared memory: another process could write a number
-//! that names no variant. What arrives is checked and then becomes the types of crate `ampco`.
+//! that names no variant. What the numbers mean is the business of the two shells that speak here.
 
 use std::time::{Duration, Instant};
 
-use ampco::{Decision, Granularity, Rule};
 use iceoryx2::prelude::ZeroCopySend;
 
 use crate::error::PortError;
@@ -15,11 +14,6 @@ use crate::stream::Directives;
 
 /// How long an answer is still waited for once this process was asked to stop.
 const LAST_WORD: Duration = Duration::from_secs(1);
-
-const FIXED: u32 = 0;
-const GUIDED: u32 = 1;
-const ADAMIMIC: u32 = 2;
-const BOUNDED: u32 = 3;
 
 /// A decision on its way to the learner. NaN stands for a number that does not exist yet.
 #[repr(C)]
@@ -38,15 +32,15 @@ pub struct Directive {
     pub switched_at: u64,
     /// 1 or 2.
     pub phase: u32,
-    /// Which rule; read it with [`Self::rule`].
+    /// Which rule: 0 fixed weights, 1 guided, 2 AdaMimic, 3 bounded.
     pub rule: u32,
     /// First parameter of the rule: style weight, ceiling, or lower bound.
     pub first: f32,
     /// Second parameter of the rule: upper bound.
     pub second: f32,
-    /// Whose rewards the rule is evaluated on; read it with [`Self::granularity`].
+    /// Whose rewards the rule is evaluated on: 0 each transition's, 1 the batch's means.
     pub granularity: u32,
-    /// 1 when the switch is doubtful, see `ampco::Decision::warning`.
+    /// 1 when the switch is doubtful: the style reward was falling.
     pub warned: u32,
     /// μ lower of Eq. 13.
     pub lower: f64,
@@ -62,85 +56,7 @@ pub struct Directive {
     pub decision_seconds: f64,
 }
 
-/// Why a directive cannot be followed.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum RuleError {
-    /// No rule has this number.
-    #[error("directive names rule {0}, known are 0 to 3")]
-    UnknownRule(u32),
-    /// No granularity has this number.
-    #[error("directive names granularity {0}, known are 0 and 1")]
-    UnknownGranularity(u32),
-    /// The rule's parameters make no sense.
-    #[error("directive carries a rule that cannot be evaluated")]
-    Parameters(#[source] ampco::RuleError),
-}
-
 impl Directive {
-    /// The decision as a message that answers the learner with incarnation `learner`.
-    pub fn new(learner: u64, decision: &Decision) -> Self {
-        let (rule, first, second) = match decision.rule {
-            Rule::Fixed { style_weight } => (FIXED, style_weight, 0.0),
-            Rule::Guided { ceiling } => (GUIDED, ceiling, 0.0),
-            Rule::AdaMimic { ceiling } => (ADAMIMIC, ceiling, 0.0),
-            Rule::Bounded { lower, upper } => (BOUNDED, lower, upper),
-        };
-        let bounds = decision.bounds();
-        Self {
-            scheduler: 0,
-            sequence: 0,
-            learner,
-            iteration: decision.iteration,
-            switched_at: decision.switched_at().unwrap_or(u64::MAX),
-            phase: decision.phase.number(),
-            rule,
-            first,
-            second,
-            granularity: match decision.granularity {
-                Granularity::Sample => 0,
-                Granularity::Mean => 1,
-            },
-            warned: u32::from(decision.warning().is_some()),
-            lower: bounds.map_or(f64::NAN, |bounds| bounds.lower()),
-            upper: bounds.map_or(f64::NAN, |bounds| bounds.upper()),
-            breakout_rate: decision.breakout_rate.unwrap_or(f64::NAN),
-            threshold: decision.threshold,
-            trend: decision.trend.unwrap_or(f64::NAN),
-            decision_seconds: f64::NAN,
-        }
-    }
-
-    /// The rule, checked.
-    pub fn rule(&self) -> Result<Rule, RuleError> {
-        let rule = match self.rule {
-            FIXED => Rule::Fixed {
-                style_weight: self.first,
-            },
-            GUIDED => Rule::Guided {
-                ceiling: self.first,
-            },
-            ADAMIMIC => Rule::AdaMimic {
-                ceiling: self.first,
-            },
-            BOUNDED => Rule::Bounded {
-                lower: self.first,
-                upper: self.second,
-            },
-            unknown => return Err(RuleError::UnknownRule(unknown)),
-        };
-        rule.validate().map_err(RuleError::Parameters)?;
-        Ok(rule)
-    }
-
-    /// Whose rewards the rule is evaluated on.
-    pub fn granularity(&self) -> Result<Granularity, RuleError> {
-        match self.granularity {
-            0 => Ok(Granularity::Sample),
-            1 => Ok(Granularity::Mean),
-            unknown => Err(RuleError::UnknownGranularity(unknown)),
-        }
-    }
-
     /// Lower and upper bound of phase II.
     pub fn bounds(&self) -> Option<(f64, f64)> {
         Some((number(self.lower)?, number(self.upper)?))

@@ -37,7 +37,7 @@ mod stream;
 mod watch;
 mod weights;
 
-pub use directive::{Answer, Directive, DirectivePublisher, DirectiveSubscriber, RuleError};
+pub use directive::{Answer, Directive, DirectivePublisher, DirectiveSubscriber};
 pub use domain::{Domain, DomainError, Member, PROTOCOL_VERSION};
 pub use error::PortError;
 pub use port::{SendOutcome, Wake};

@@ -6,6 +6,8 @@
 use std::time::Duration;
 
 use iceoryx2::prelude::ZeroCopySend;
+use serde::{Deserialize, Serialize};
+use vocabulary::number;
 
 use crate::error::PortError;
 use crate::port::{Publisher, Subscriber, Wake};
@@ -15,14 +17,16 @@ use crate::stream::Rewards;
 /// Rewards of one iteration's batch, before blending.
 ///
 /// The means are `f64`, as in `metrics.jsonl`: a scheduler that rebuilds its state from there must
-/// come to the same bits.
+/// come to the same bits. As JSON, for a checkpoint, it has no sender, and NaN is `null`.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, ZeroCopySend)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, ZeroCopySend, Serialize, Deserialize)]
 #[type_name("ampco.RewardReport")]
 pub struct RewardReport {
     /// Incarnation of the learner; filled by [`RewardPublisher::send`].
+    #[serde(skip)]
     pub learner: u64,
     /// Reports of this learner before this one; filled by [`RewardPublisher::send`].
+    #[serde(skip)]
     pub sequence: u64,
     /// Number of the iteration.
     pub iteration: u64,
@@ -39,21 +43,11 @@ pub struct RewardReport {
     /// Mean task reward.
     pub task_mean: f64,
     /// Standard deviation of the task reward; NaN where it is not known.
+    #[serde(default = "number::unknown", deserialize_with = "number::or_nan")]
     pub task_std: f64,
     /// Mean length of the episodes that ended, as a share of the longest possible; NaN where none ended.
+    #[serde(default = "number::unknown", deserialize_with = "number::or_nan")]
     pub episode_share: f64,
-}
-
-impl From<&RewardReport> for ampco::Report {
-    fn from(report: &RewardReport) -> Self {
-        Self {
-            iteration: report.iteration,
-            style_mean: report.style_mean,
-            style_std: report.style_std,
-            task_mean: report.task_mean,
-            episode_share: Some(report.episode_share).filter(|share| !share.is_nan()),
-        }
-    }
 }
 
 /// The learner's end. There is one per run.
@@ -181,5 +175,42 @@ mod tests {
         assert_eq!(arrive(&mut gaps, 1, 4), (2, false)); // 2 and 3
         assert_eq!(arrive(&mut gaps, 2, 1), (1, true)); // 0 of the new learner
         assert_eq!(gaps.missed, 3);
+    }
+
+    #[test]
+    fn a_report_outlives_a_checkpoint_without_its_sender() {
+        let report = RewardReport {
+            learner: 7,
+            sequence: 3,
+            iteration: 12,
+            samples: 96,
+            style_mean: 0.1 + 0.2, // 0.30000000000000004, to the last bit
+            task_std: 0.25,
+            episode_share: f64::NAN,
+            ..RewardReport::default()
+        };
+        let text = serde_json::to_string(&report).unwrap();
+        let back: RewardReport = serde_json::from_str(&text).unwrap();
+        assert!(back.episode_share.is_nan(), "{text}");
+        let comparable = RewardReport {
+            episode_share: 0.0,
+            ..back
+        };
+        let expected = RewardReport {
+            learner: 0,
+            sequence: 0,
+            episode_share: 0.0,
+            ..report
+        };
+        assert_eq!(comparable, expected);
+    }
+
+    #[test]
+    fn a_report_of_a_program_that_measured_less_is_read() {
+        let text = r#"{"iteration":2,"samples":8,"style_mean":0.5,"style_std":0.25,
+            "style_min":0.0,"style_max":1.0,"task_mean":0.75}"#;
+        let report: RewardReport = serde_json::from_str(text).unwrap();
+        assert_eq!((report.iteration, report.task_mean), (2, 0.75));
+        assert!(report.task_std.is_nan() && report.episode_share.is_nan());
     }
 }

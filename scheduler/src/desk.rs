@@ -5,7 +5,7 @@
 use ampco::{Decision, Report, ReportError, Schedule, ScheduleConfig};
 use anyhow::Result;
 
-use crate::history::{Record, rebuild};
+use crate::history::rebuild;
 
 /// The schedule and what is needed to put it together again.
 #[derive(Debug)]
@@ -27,7 +27,7 @@ pub(crate) struct Reply {
 
 impl Desk {
     /// A desk that knows what the run has recorded so far.
-    pub(crate) fn open(config: ScheduleConfig, records: &[Record]) -> Result<Self> {
+    pub(crate) fn open(config: ScheduleConfig, records: &[Report]) -> Result<Self> {
         let schedule = rebuild(&config, records, u64::MAX)?;
         Ok(Self { config, schedule })
     }
@@ -42,7 +42,7 @@ impl Desk {
     pub(crate) fn answer(
         &mut self,
         report: Report,
-        records: impl FnOnce() -> Result<Vec<Record>>,
+        records: impl FnOnce() -> Result<Vec<Report>>,
     ) -> Result<Reply> {
         let newest = self.schedule.newest_iteration().unwrap_or(0);
         let rebuilt = newest.checked_add(1) != Some(report.iteration);
@@ -80,17 +80,8 @@ mod tests {
         }
     }
 
-    fn records(iterations: std::ops::RangeInclusive<u64>) -> Vec<Record> {
-        let line = |i| {
-            let report = report(i);
-            serde_json::json!({
-                "iteration": i, "style_mean": report.style_mean, "style_std": report.style_std,
-                "task_mean": report.task_mean, "episode_share": report.episode_share
-            })
-        };
-        iterations
-            .map(|i| serde_json::from_value(line(i)).unwrap())
-            .collect()
+    fn records(iterations: std::ops::RangeInclusive<u64>) -> Vec<Report> {
+        iterations.map(report).collect()
     }
 
     /// What a desk that misses nothing answers to report `iteration`.
@@ -102,7 +93,7 @@ mod tests {
             .unwrap()
     }
 
-    fn unread() -> Result<Vec<Record>> {
+    fn unread() -> Result<Vec<Report>> {
         panic!("the metrics are read only when something was missed")
     }
 

@@ -5,31 +5,7 @@
 //! state, bit by bit, in which an uninterrupted scheduler would be.
 
 use ampco::{Report, Schedule, ScheduleConfig};
-use serde::Deserialize;
 use vocabulary::Invalid;
-
-/// The fields of a metrics line that decisions depend on; a number that was not finite is `null` there.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
-pub(crate) struct Record {
-    iteration: u64,
-    style_mean: Option<f64>,
-    style_std: Option<f64>,
-    task_mean: Option<f64>,
-    episode_share: Option<f64>,
-}
-
-impl Record {
-    /// The report that the learner sent with this line.
-    fn report(&self) -> Report {
-        Report {
-            iteration: self.iteration,
-            style_mean: self.style_mean.unwrap_or(f64::NAN),
-            style_std: self.style_std.unwrap_or(f64::NAN),
-            task_mean: self.task_mean.unwrap_or(f64::NAN),
-            episode_share: self.episode_share,
-        }
-    }
-}
 
 /// The schedule after the recorded iterations below `before`.
 ///
@@ -37,7 +13,7 @@ impl Record {
 /// schedule refuses are left out, as they were when they arrived.
 pub(crate) fn rebuild(
     config: &ScheduleConfig,
-    records: &[Record],
+    records: &[Report],
     before: u64,
 ) -> Result<Schedule, Invalid> {
     let mut lasting: Vec<Report> = Vec::with_capacity(records.len());
@@ -48,7 +24,7 @@ pub(crate) fn rebuild(
         {
             lasting.pop();
         }
-        lasting.push(record.report());
+        lasting.push(*record);
     }
     let mut schedule = Schedule::new(config.clone())?;
     for report in lasting {
@@ -101,7 +77,7 @@ mod tests {
         format!("{line}\n")
     }
 
-    fn records(text: &str) -> Vec<Record> {
+    fn records(text: &str) -> Vec<Report> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("metrics.jsonl");
         fs::write(&path, text).unwrap();

@@ -8,4 +8,5 @@
 mod config;
 mod desk;
 mod history;
+mod message;
 pub mod process;

@@ -12,7 +12,7 @@ use run::{Folder, Lock};
 use tracing::{info, warn};
 
 use crate::desk::Desk;
-use crate::history::Record;
+use crate::message;
 
 /// Longest sleep without a report. The wait itself looks for dead processes and for the request to stop.
 const SLEEP: Duration = Duration::from_secs(1);
@@ -45,7 +45,7 @@ fn serve(folder: &Folder, config: ScheduleConfig, node: &Node, held: &mut Lock) 
             let decision = answer(&mut desk, &arrival, folder)?;
             directives.send(Directive {
                 decision_seconds: started.elapsed().as_secs_f64(),
-                ..Directive::new(arrival.report.learner, &decision)
+                ..message::directive(arrival.report.learner, &decision)
             })?;
             held.at_work();
         }
@@ -69,7 +69,7 @@ fn begin(folder: &Folder, config: ScheduleConfig) -> Result<Desk> {
 }
 
 fn answer(desk: &mut Desk, arrival: &RewardArrival, folder: &Folder) -> Result<Decision> {
-    let report = Report::from(&arrival.report);
+    let report = message::report(&arrival.report);
     let reply = desk.answer(report, || records(folder))?;
     let decision = reply.decision;
     if reply.rebuilt {
@@ -104,7 +104,7 @@ fn tell_switch(decision: &Decision) {
     }
 }
 
-fn records(folder: &Folder) -> Result<Vec<Record>> {
+fn records(folder: &Folder) -> Result<Vec<Report>> {
     run::metrics::read(&folder.metrics_path()).context("reading the run's metrics")
 }
 

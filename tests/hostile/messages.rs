@@ -1,11 +1,10 @@
 //! Every kind of message, with anything in its fields.
 
-use ampco::{Report, Schedule, ScheduleConfig};
+use ampco::{Numbers, Report, Schedule, ScheduleConfig, Weighting};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use protocol::{
-    Directive, Entry, Ledger, MAX_HIDDEN_LAYERS, RewardReport, RolloutHeader, RolloutLayout,
-    WeightsHeader,
+    Directive, Entry, Ledger, MAX_HIDDEN_LAYERS, RolloutHeader, RolloutLayout, WeightsHeader,
 };
 use vocabulary::Cause;
 
@@ -183,14 +182,20 @@ fn a_directive_is_a_rule_that_can_be_evaluated_or_is_refused() {
                 switched_at,
                 ..Directive::default()
             };
-            match directive.rule() {
+            let numbers = Numbers {
+                rule: directive.rule,
+                first: directive.first,
+                second: directive.second,
+                granularity: directive.granularity,
+            };
+            match Weighting::try_from(numbers) {
                 Err(error) => assert_clear(&error),
-                Ok(rule) => {
-                    rule.validate().expect("what is accepted is valid");
+                Ok(weighting) => {
+                    weighting
+                        .rule
+                        .validate()
+                        .expect("what is accepted is valid");
                 }
-            }
-            if let Err(error) = directive.granularity() {
-                assert_clear(&error);
             }
             let _ = (
                 directive.bounds(),
@@ -213,14 +218,14 @@ fn the_schedule_bears_any_report() {
         };
         let mut schedule = Schedule::new(config).expect("valid");
         for (iteration, style_mean, style_std, task_mean) in reports {
-            let message = RewardReport {
+            let report = Report {
                 iteration,
                 style_mean,
                 style_std,
                 task_mean,
-                ..RewardReport::default()
+                episode_share: Some(style_std),
             };
-            match schedule.observe(Report::from(&message)) {
+            match schedule.observe(report) {
                 Err(error) => assert_clear(&error),
                 Ok(decision) => {
                     decision

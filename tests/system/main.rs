@@ -11,6 +11,7 @@ mod disk;
 mod elastic;
 mod faults;
 mod features;
+mod floors;
 mod group;
 mod harness;
 mod imports;

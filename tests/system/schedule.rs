@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use ampco::{Report, Rule, Schedule, ScheduleConfig};
+use ampco::{Granularity, Numbers, Report, Rule, RuleError, Schedule, ScheduleConfig, Weighting};
 use protocol::{
     Answer, Directive, DirectivePublisher, DirectiveSubscriber, Domain, Node, RewardPublisher,
     RewardReport, RewardSubscriber, Shutdown,
@@ -23,6 +23,15 @@ fn config() -> ScheduleConfig {
 /// A climb of six reports, then a plateau.
 fn style(iteration: u64) -> f64 {
     (0.1 * iteration as f64).min(0.6)
+}
+
+fn weighting(directive: &Directive) -> Result<Weighting, RuleError> {
+    Weighting::try_from(Numbers {
+        rule: directive.rule,
+        first: directive.first,
+        second: directive.second,
+        granularity: directive.granularity,
+    })
 }
 
 struct LearnersPart {
@@ -105,7 +114,7 @@ fn the_scheduler_switches_where_the_paper_says_also_across_its_own_death() {
             expected.phase.number(),
             "iteration {iteration}"
         );
-        assert_eq!(directive.rule().expect("a rule"), expected.rule);
+        assert_eq!(weighting(&directive), Ok(expected.weighting()));
         switched = switched.or(directive.switched_at());
     }
     // Report 7 still breaks out: 0.6 is above the 95th percentile of 0.3, 0.4, 0.5, 0.6, which lies
@@ -136,7 +145,11 @@ fn the_learner_obeys_the_directive_that_answers_its_report() {
     until("six reports", || {
         let arrival = reports.receive().expect("readable")?;
         let iteration = arrival.report.iteration;
-        let mut directive = Directive {
+        let numbers = Numbers::from(Weighting {
+            rule: rule(iteration),
+            granularity: Granularity::Sample,
+        });
+        let directive = Directive {
             learner: arrival.report.learner,
             iteration,
             phase: if iteration < 3 { 1 } else { 2 },
@@ -145,15 +158,11 @@ fn the_learner_obeys_the_directive_that_answers_its_report() {
             upper: f64::NAN,
             breakout_rate: f64::NAN,
             trend: f64::NAN,
+            rule: numbers.rule,
+            first: numbers.first,
+            second: numbers.second,
             ..Directive::default()
         };
-        match rule(iteration) {
-            Rule::Bounded { lower, upper } => {
-                (directive.rule, directive.first, directive.second) = (3, lower, upper);
-            }
-            Rule::Fixed { style_weight } => (directive.rule, directive.first) = (0, style_weight),
-            other => panic!("{other:?} is not played here"),
-        }
         directives.send(directive).expect("sent");
         (iteration >= 6).then_some(())
     });

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use amp::{Batch, LearningConfig};
-use ampco::{Granularity, Rule as Weighting};
+use ampco::Granularity;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use run::Config;
@@ -128,7 +128,7 @@ fn iterate(learning: &mut Learning, seed: u64, width: usize) {
         rows.iter_mut()
             .for_each(|x| *x = rng.random_range(-1.0..1.0));
     };
-    let weighting = Weighting::Fixed { style_weight: 0.5 };
+    let weighting = ampco::Rule::Fixed { style_weight: 0.5 };
     learning
         .iterate(&batch, &mut experts, weighting, Granularity::Sample)
         .unwrap();

@@ -2,7 +2,6 @@
 
 use std::time::Duration;
 
-use ampco::{Decision, Granularity, Phase, Rule};
 use protocol::{
     Answer, Directive, DirectivePublisher, DirectiveSubscriber, Entry, Ledger, RewardPublisher,
     RewardReport, RewardSubscriber, RolloutHeader, RolloutPublisher, RolloutSubscriber,
@@ -230,27 +229,23 @@ fn the_learner_waits_for_the_answer_to_its_own_report() {
     let run = Run::new();
     let (learner, scheduler) = (run.join("learner"), run.join("scheduler"));
     let mut publisher = DirectivePublisher::new(&scheduler).unwrap();
-    let decision = |iteration| Decision {
+    let answer = |learner, iteration| Directive {
+        learner,
         iteration,
-        phase: Phase::One,
-        rule: Rule::Guided { ceiling: 0.5 },
-        granularity: Granularity::Sample,
-        breakout_rate: None,
-        threshold: 0.05,
-        trend: None,
+        rule: 1,
+        first: 0.5,
+        ..Directive::default()
     };
     let me = learner.incarnation();
     // An answer to an earlier life, and one to the report before.
-    publisher
-        .send(Directive::new(me - 1, &decision(8)))
-        .unwrap();
+    publisher.send(answer(me - 1, 8)).unwrap();
     let mut subscriber = DirectiveSubscriber::new(&learner).unwrap();
-    publisher.send(Directive::new(me, &decision(6))).unwrap();
+    publisher.send(answer(me, 6)).unwrap();
     let short = Duration::from_millis(30);
     assert_eq!(subscriber.wait_for(me, 7, short).unwrap(), Answer::Late);
 
     let answering = std::thread::spawn(move || {
-        publisher.send(Directive::new(me, &decision(7))).unwrap();
+        publisher.send(answer(me, 7)).unwrap();
         publisher // dropping it would wake the learner too
     });
     let Answer::Came(directive) = subscriber.wait_for(me, 7, DEADLINE).unwrap() else {
@@ -259,7 +254,7 @@ fn the_learner_waits_for_the_answer_to_its_own_report() {
     assert_eq!(directive.iteration, 7);
     assert_eq!(directive.scheduler, scheduler.incarnation());
     assert_eq!(directive.sequence, 2);
-    assert_eq!(directive.rule(), Ok(Rule::Guided { ceiling: 0.5 }));
+    assert_eq!((directive.rule, directive.first), (1, 0.5));
     answering.join().unwrap();
 
     // Asked to stop, the learner waits no longer than a second for the last word.

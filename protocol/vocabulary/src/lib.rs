@@ -8,10 +8,12 @@
 //! | why an episode ended | [`cause`] |
 //! | a value that may move over the samples | [`ramp`] |
 //! | why a value of the configuration is refused | [`invalid`] |
+//! | a number that may be `null` in a file | [`number`] |
 #![forbid(unsafe_code)]
 
 pub mod cause;
 pub mod invalid;
+pub mod number;
 pub mod ramp;
 
 pub use cause::{Cause, Counts, RUNNING};

@@ -1,6 +1,6 @@
 //! What the schedule answers to a report.
 
-use crate::{Bounds, Granularity, Rule};
+use crate::{Bounds, Granularity, Rule, Weighting};
 
 /// The phase of training. Bounds exist in phase II only, and there is no way back.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,6 +72,14 @@ pub struct Decision {
 }
 
 impl Decision {
+    /// Rule and granularity together.
+    pub fn weighting(&self) -> Weighting {
+        Weighting {
+            rule: self.rule,
+            granularity: self.granularity,
+        }
+    }
+
     /// Iteration in which convergence was found.
     pub fn switched_at(&self) -> Option<u64> {
         self.switch().map(|switch| switch.iteration)

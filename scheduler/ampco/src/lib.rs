@@ -58,5 +58,5 @@ pub use decision::{Decision, Phase, Switch, Warning};
 pub use method::{AfterConvergence, Method};
 pub use report::{Report, ReportError};
 pub use schedule::Schedule;
-pub use weighting::{Rule, RuleError};
+pub use weighting::{Numbers, Rule, RuleError, Weighting};
 pub use weights::Weights;

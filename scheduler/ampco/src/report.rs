@@ -1,15 +1,22 @@
 //! What the learner says about one iteration, and why a report may be refused.
 
-/// Rewards of one iteration's batch, before blending.
-#[derive(Clone, Copy, Debug, PartialEq)]
+use serde::Deserialize;
+use vocabulary::number;
+
+/// Rewards of one iteration's batch, before blending; as JSON the fields of a line of the metrics, where `null` is a
+/// number that was not finite.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 pub struct Report {
     /// Number of the iteration; reports come in rising order.
     pub iteration: u64,
     /// r̄ˢ, mean style reward over the batch's transitions.
+    #[serde(default = "number::unknown", deserialize_with = "number::or_nan")]
     pub style_mean: f64,
     /// σˢ, standard deviation of the style reward over the same transitions.
+    #[serde(default = "number::unknown", deserialize_with = "number::or_nan")]
     pub style_std: f64,
     /// Mean task reward over the same transitions.
+    #[serde(default = "number::unknown", deserialize_with = "number::or_nan")]
     pub task_mean: f64,
     /// Mean length of the episodes that ended in the iteration, as a share of the longest possible; none if none ended.
     pub episode_share: Option<f64>,

@@ -5,7 +5,7 @@ use crate::breakout::{Detector, Observation};
 use crate::weighting::guidance::Ceiling;
 use crate::{
     AfterConvergence, Bounds, BoundsSource, Decision, Granularity, Phase, Report, ReportError,
-    Rule, ScheduleConfig, Switch,
+    Rule, ScheduleConfig, Switch, Weighting,
 };
 use vocabulary::Invalid;
 
@@ -63,6 +63,14 @@ impl Schedule {
             breakout_rate: self.detector.breakout_rate(),
             threshold: self.detector.threshold(),
             trend: self.detector.rewards().slope(),
+        }
+    }
+
+    /// Rule and granularity in force.
+    pub fn weighting(&self) -> Weighting {
+        Weighting {
+            rule: self.rule(),
+            granularity: self.granularity(),
         }
     }
 

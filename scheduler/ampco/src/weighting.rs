@@ -5,7 +5,10 @@
 
 pub mod adamimic;
 pub mod guidance;
+mod numbers;
 pub mod roger;
+
+pub use numbers::{Numbers, Weighting};
 
 use crate::Weights;
 
@@ -39,6 +42,12 @@ pub enum Rule {
 /// Why a rule that came from elsewhere cannot be evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum RuleError {
+    /// No rule has this number.
+    #[error("rule {0} is unknown, known are 0 to 3")]
+    UnknownRule(u32),
+    /// No granularity has this number.
+    #[error("granularity {0} is unknown, known are 0 and 1")]
+    UnknownGranularity(u32),
     /// A style weight that is no share.
     #[error("style weight {0} is outside [0, 1]")]
     StyleWeight(f32),

@@ -38,9 +38,9 @@ fn report(iteration: u64) -> RewardReport {
 fn expected(learner: u64, iteration: u64) -> Directive {
     let mut schedule = Schedule::new(config()).unwrap();
     for earlier in 1..=iteration {
-        schedule.observe(Report::from(&report(earlier))).unwrap();
+        schedule.observe(message::report(&report(earlier))).unwrap();
     }
-    Directive::new(learner, &schedule.decision(iteration))
+    message::directive(learner, &schedule.decision(iteration))
 }
 
 /// A learner that only reports, and the folder of its run.
