@@ -5,27 +5,42 @@
 #![forbid(unsafe_code)]
 
 mod actor;
+#[path = "../../bench/src/lib.rs"]
 mod bench;
+#[path = "../../supervise/src/child.rs"]
 mod child;
+#[path = "../../terminal/src/console.rs"]
 mod console;
+#[path = "../../terminal/src/engine.rs"]
 mod engine;
+#[path = "../../judge/src/lib.rs"]
 mod evaluate;
 mod export;
+#[path = "../../terminal/src/failure.rs"]
 mod failure;
+#[path = "../../terminal/src/figures.rs"]
 mod figures;
+#[path = "../../terminal/src/file.rs"]
 mod file;
+#[path = "../../motions/src/lib.rs"]
 mod motions;
+#[path = "../../terminal/src/place.rs"]
 mod place;
 mod play;
 mod plot;
+#[path = "../../configuration/src/presets.rs"]
 mod presets;
 #[cfg(test)]
 mod readme;
+#[path = "../../configuration/src/resolve.rs"]
 mod resolve;
+#[path = "../../../tests/soak/src/lib.rs"]
 mod soak;
 mod stages;
 mod status;
+#[path = "../../conduct/src/lib.rs"]
 mod study;
+#[path = "../../supervise/src/lib.rs"]
 mod supervise;
 mod train;
 

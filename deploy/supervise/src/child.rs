@@ -317,4 +317,5 @@ pub(crate) fn last_words(log: &Path, before: u64) -> Option<String> {
 }
 
 #[cfg(test)]
+#[path = "child/tests.rs"]
 mod tests;
