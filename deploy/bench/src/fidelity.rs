@@ -8,9 +8,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, anyhow};
 use fidelity::{Engine, Row, Traces, case, cases, markdown, measure, rows};
 use serde_json::{Map, Value, json};
-
-use crate::console::say;
-use crate::file;
+use terminal::console::say;
+use terminal::file;
 
 /// Errors of the physics engines in the same cases, as a Markdown table
 #[derive(Debug, clap::Args)]

@@ -3,6 +3,8 @@
 //! Each benchmark is a file of its own that returns one JSON object; this file prints it as the
 //! last line of standard output, so that scripts read that line and people read what is above.
 
+#![forbid(unsafe_code)]
+
 mod fidelity;
 mod ipc;
 mod learner;
@@ -13,12 +15,11 @@ mod sim;
 use anyhow::{Context, Result};
 use clap::{Args, Subcommand};
 use serde_json::Value;
-
-use crate::console;
+use terminal::console;
 
 /// Measure one part on this machine; the last line printed is a JSON object
 #[derive(Debug, Args)]
-pub(crate) struct Bench {
+pub struct Bench {
     #[command(subcommand)]
     part: Part,
 }
@@ -38,7 +39,8 @@ enum Part {
 }
 
 impl Bench {
-    pub(crate) fn run(&self) -> Result<()> {
+    /// Measures, and prints a JSON object.
+    pub fn run(&self) -> Result<()> {
         let (part, result) = match &self.part {
             Part::Sim(bench) => ("sim", bench.run()),
             Part::Fidelity(bench) => ("fidelity", bench.run()),

@@ -12,8 +12,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde_json::{Value, json};
 use sim::{Fleet, Physics, RandomizationConfig, Starts, StepRows, TaskConfig};
-
-use crate::engine::Engine;
+use terminal::Engine;
 
 /// Standard deviation of the benchmark's actions; 0.25 rad per unit, as a policy in training moves.
 const EXPLORATION: f32 = 0.5;

@@ -11,13 +11,11 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use run::{FleetConfig, Folder};
 use rustix::process::{Pid, Signal, kill_process};
+use supervise::{Stop, programs, run_dir};
+use terminal::Place;
+use terminal::failure::usage;
 use tokio::process::{Child, Command};
 use tokio::time::{interval, timeout};
-
-use crate::child;
-use crate::failure::usage;
-use crate::place::Place;
-use crate::supervise::{Stop, run_dir};
 
 /// How long the new actor may take to take its role.
 const JOINING: Duration = Duration::from_secs(30);
@@ -42,9 +40,9 @@ impl AddActor {
                 folder.name()
             )));
         }
-        let status = child::runtime()?.block_on(stay_with(&folder))?;
+        let status = programs::runtime()?.block_on(stay_with(&folder))?;
         if !status.success() {
-            bail!("the actor {}", child::describe(status));
+            bail!("the actor {}", programs::describe(status));
         }
         Ok(())
     }
@@ -74,7 +72,7 @@ async fn join(folder: &Folder) -> Result<Child> {
     if index as usize >= protocol::MAX_ACTORS {
         bail!("the group is full: at most {} actors", protocol::MAX_ACTORS);
     }
-    let mut process = Command::new(child::program("ampco-actor")?)
+    let mut process = Command::new(programs::find("ampco-actor")?)
         .args(run_dir(folder))
         .args(["--index", &index.to_string()])
         .env(

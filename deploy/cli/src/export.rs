@@ -8,13 +8,11 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use export::{Description, Network, Origin, network, onnx, tensors};
 use g1::mjcf;
+use judge::Kept;
 use sim::RandomizationConfig;
 use sim::world::{CONTROL_STEP, GRAVITY, PHYSICS_STEP};
-
-use crate::console;
-use crate::evaluate::subject::Kept;
-use crate::failure::usage;
-use crate::place::Place;
+use terminal::failure::usage;
+use terminal::{Place, console};
 
 /// The robot's file.
 const MODEL: &str = "g1.xml";
@@ -141,7 +139,7 @@ fn write_all(folder: &Path, files: &[(&str, Vec<u8>)]) -> Result<Vec<(PathBuf, u
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluate::subject::Subject;
+    use judge::Subject;
 
     /// A copy of a shipped policy with another line in its configuration.
     fn shipped_with(folder: &Path, line: &str, instead: &str) -> Result<Subject> {

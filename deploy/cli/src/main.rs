@@ -5,48 +5,19 @@
 #![forbid(unsafe_code)]
 
 mod actor;
-#[path = "../../bench/src/lib.rs"]
-mod bench;
-#[path = "../../supervise/src/child.rs"]
-mod child;
-#[path = "../../terminal/src/console.rs"]
-mod console;
-#[path = "../../terminal/src/engine.rs"]
-mod engine;
-#[path = "../../judge/src/lib.rs"]
-mod evaluate;
 mod export;
-#[path = "../../terminal/src/failure.rs"]
-mod failure;
-#[path = "../../terminal/src/figures.rs"]
-mod figures;
-#[path = "../../terminal/src/file.rs"]
-mod file;
-#[path = "../../motions/src/lib.rs"]
-mod motions;
-#[path = "../../terminal/src/place.rs"]
-mod place;
 mod play;
 mod plot;
-#[path = "../../configuration/src/presets.rs"]
-mod presets;
 #[cfg(test)]
 mod readme;
-#[path = "../../configuration/src/resolve.rs"]
-mod resolve;
-#[path = "../../../tests/soak/src/lib.rs"]
-mod soak;
 mod stages;
 mod status;
-#[path = "../../conduct/src/lib.rs"]
-mod study;
-#[path = "../../supervise/src/lib.rs"]
-mod supervise;
 mod train;
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use terminal::{console, failure};
 
 // As in the learner: `bench learner` is to time the same program.
 #[global_allocator]
@@ -89,12 +60,12 @@ enum Command {
     Stages(stages::Stages),
     Actor(actor::AddActor),
     Status(status::Status),
-    Evaluate(evaluate::Evaluate),
+    Evaluate(judge::Evaluate),
     Plot(plot::Plot),
     Motions(motions::Motions),
     Export(export::Export),
     Play(play::Play),
-    Study(study::Study),
+    Study(conduct::Study),
     Bench(bench::Bench),
     Soak(soak::Soak),
 }

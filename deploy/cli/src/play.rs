@@ -8,14 +8,10 @@ mod policy;
 use std::path::PathBuf;
 
 use anyhow::Result;
+use judge::Command;
 use playback::{Recording, page};
-
-use crate::console;
-use crate::engine::Engine;
-use crate::evaluate::Command;
-use crate::failure::usage;
-use crate::file;
-use crate::place::Place;
+use terminal::failure::usage;
+use terminal::{Engine, Place, console, file};
 
 /// Watch a policy or a reference motion: a page for any browser, or the frames as data
 ///

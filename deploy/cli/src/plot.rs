@@ -6,11 +6,8 @@ use anyhow::Result;
 use plots::{Axis, Band, Colour, Figure, Line, LineChart, Mark, Panel, smooth};
 use run::{Folder, metrics};
 use serde::Deserialize;
-
-use crate::console;
-use crate::failure::usage;
-use crate::file;
-use crate::place::Place;
+use terminal::failure::usage;
+use terminal::{Place, console, file};
 
 /// Points of a curve: as many as a figure can show.
 const POINTS: usize = 150;

@@ -8,9 +8,8 @@ mod plan;
 
 use anyhow::Result;
 use clap::Args;
+use terminal::{Place, console};
 
-use crate::console;
-use crate::place::Place;
 use plan::Plan;
 
 /// Train in stages: each run begins with the policy of the one before

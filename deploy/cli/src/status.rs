@@ -8,11 +8,9 @@ use anyhow::Result;
 use clap::Args;
 use run::{Folder, RunConfig, metrics};
 use serde_json::{Value, json};
+use terminal::figures::{self, Figures, Outlook};
+use terminal::{Place, console};
 use wording::count;
-
-use crate::console;
-use crate::figures::{self, Figures, Outlook};
-use crate::place::Place;
 
 /// Show how a run is going: its newest figures, who is alive, its checkpoints
 #[derive(Debug, Args)]

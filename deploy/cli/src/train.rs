@@ -7,21 +7,21 @@ use std::path::Path;
 use amp::PolicyConfig;
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use configuration::presets;
+use configuration::resolve::{self, Resolved};
+use judge::Kept;
 use motion::Dataset;
 use motion::dataset::Reference;
 use motion::quality::{Severity, line, severity};
 use protocol::RolloutLayout;
 use run::motion::Print;
 use run::{Config, Folder};
+use supervise::Launch;
+use terminal::Place;
+use terminal::console::say;
+use terminal::failure::usage;
 use wording::count;
 
-use crate::console::say;
-use crate::evaluate::subject::Kept;
-use crate::failure::usage;
-use crate::place::Place;
-use crate::presets;
-use crate::resolve::{self, Resolved};
-use crate::supervise::{self, Launch};
 use resumed::GoingOn;
 
 /// Train: start scheduler, learner and actors, watch them, end them in order on Ctrl-C

@@ -11,6 +11,9 @@ use ::study::outlook::Progress;
 use anyhow::{Context, Result};
 use run::metrics::{self, Tail};
 use rustix::process::Signal;
+use supervise::{Stop, programs};
+use terminal::console::Console;
+use terminal::figures::{Figures, Pace};
 use tokio::process::Child;
 use tokio::time::{MissedTickBehavior, interval};
 
@@ -18,10 +21,6 @@ use super::folder::StudyFolder;
 use super::group::{self, Standing};
 use super::judgement::Judgement;
 use super::plan::Planned;
-use crate::child;
-use crate::console::Console;
-use crate::figures::{Figures, Pace};
-use crate::supervise::Stop;
 
 /// Between two looks.
 const LOOK: Duration = Duration::from_millis(100);
@@ -30,7 +29,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Runs what is not done yet.
 pub(super) fn conduct(folder: &StudyFolder, file: &StudyFile, planned: Vec<Planned>) -> Result<()> {
-    child::runtime()?.block_on(async {
+    programs::runtime()?.block_on(async {
         let mut stop = Stop::install()?;
         let mut conductor = Conductor::new(folder, file, planned)?;
         conductor.until_done(&mut stop).await?;
@@ -91,7 +90,7 @@ impl<'a> Conductor<'a> {
                 given => given,
             },
             planned,
-            console: Console::new(),
+            console: Console::on_stderr(),
             stopping: false,
             waiting: None,
         })

@@ -19,10 +19,10 @@ use anyhow::{Context, Result, anyhow};
 use run::{Folder, FolderError, Lock};
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
+use terminal::failure::usage;
+use terminal::file;
 
 use super::plan::Planned;
-use crate::failure::usage;
-use crate::file;
 
 /// Name of the file that lists the runs.
 const RUNS: &str = "runs.json";

@@ -12,11 +12,11 @@ use ::study::Evaluation;
 use anyhow::{Context, Result};
 use run::Folder;
 use rustix::process::{Pid, Signal, kill_process};
+use supervise::programs;
 use tokio::process::{Child, Command};
 
 use super::folder::StudyFolder;
 use super::plan::Planned;
-use crate::child;
 
 /// How far a run has come, from its folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,6 +114,6 @@ pub(super) fn signal(child: &Child, signal: Signal) {
 
 /// Why a program failed: the last thing it said.
 pub(super) fn words(status: ExitStatus, log: &Path) -> String {
-    let said = child::last_words(log, 0);
-    child::account(status, said.as_deref(), log, 0)
+    let said = programs::last_words(log, 0);
+    programs::account(status, said.as_deref(), log, 0)
 }

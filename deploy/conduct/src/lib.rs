@@ -2,6 +2,8 @@
 //!
 //! What is computed and written is in the crate `study`; here is what touches files and processes.
 
+#![forbid(unsafe_code)]
+
 mod conduct;
 mod folder;
 mod group;
@@ -16,15 +18,14 @@ use ::study::StudyFile;
 use anyhow::{Context, Result};
 use clap::{Args, Subcommand};
 use run::Config;
+use terminal::failure::usage;
+use terminal::{console, file};
 
-use crate::console;
-use crate::failure::usage;
-use crate::file;
 use folder::StudyFolder;
 
 /// Compare methods over seeds: run a matrix of training runs, report it in the paper's tables
 #[derive(Debug, Args)]
-pub(crate) struct Study {
+pub struct Study {
     #[command(subcommand)]
     command: Command,
 }
@@ -80,7 +81,8 @@ struct ReportStudy {
 }
 
 impl Study {
-    pub(crate) fn run(&self) -> Result<()> {
+    /// Runs the study, or reports it.
+    pub fn run(&self) -> Result<()> {
         match &self.command {
             Command::Run(run) => run.run(),
             Command::Report(report) => report.run(),

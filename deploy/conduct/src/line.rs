@@ -3,10 +3,9 @@
 use std::time::Duration;
 
 use ::study::outlook::{Progress, seconds_left};
+use terminal::console::BETWEEN;
+use terminal::figures::clock;
 use wording::count;
-
-use crate::console::BETWEEN;
-use crate::figures::clock;
 
 /// A program that runs now.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use ::study::{Cell, StudyFile, matrix};
 use anyhow::{Context, Result};
+use configuration::{presets, resolve};
 use run::{Config, RunConfig};
+use terminal::failure::usage;
 use wording::count;
 
 use super::folder::StudyFolder;
-use crate::failure::usage;
-use crate::{presets, resolve};
 
 /// A run that is to be made.
 #[derive(Debug)]

@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use run::Config;
-
-use crate::failure::usage;
+use terminal::failure::usage;
 
 /// What all methods that are meant to walk begin from.
 const RECIPE: &str = include_str!("../../presets/recipe.toml");
@@ -122,21 +121,22 @@ impl Embedded {
 
 /// A preset: what differs from the defaults.
 #[derive(Debug)]
-pub(crate) struct Preset {
+pub struct Preset {
     /// Stem of the names of its runs.
-    pub(crate) name: String,
-    pub(crate) config: Config,
+    pub name: String,
+    /// What it sets.
+    pub config: Config,
     /// The file, from whose folder its relative paths start; `None` for one of ours, which has none.
-    pub(crate) file: Option<PathBuf>,
+    pub file: Option<PathBuf>,
 }
 
 /// The names, for help and errors.
-pub(crate) fn names() -> Vec<&'static str> {
+pub fn names() -> Vec<&'static str> {
     EMBEDDED.iter().map(|preset| preset.name).collect()
 }
 
 /// One of ours by its name, else a file.
-pub(crate) fn find(given: &str) -> Result<Preset> {
+pub fn find(given: &str) -> Result<Preset> {
     if let Some(preset) = EMBEDDED.iter().find(|preset| preset.name == given) {
         return Ok(Preset {
             name: preset.name.to_owned(),

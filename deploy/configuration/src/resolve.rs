@@ -33,15 +33,19 @@ const SECTIONS: [&str; 10] = [
 
 /// What `train` itself needs of a resolved configuration.
 #[derive(Debug)]
-pub(crate) struct Resolved {
-    pub(crate) run: RunConfig,
-    pub(crate) fleet: FleetConfig,
-    pub(crate) motion: MotionConfig,
-    pub(crate) policy: PolicyConfig,
+pub struct Resolved {
+    /// Section `run`.
+    pub run: RunConfig,
+    /// Section `fleet`, actors written out.
+    pub fleet: FleetConfig,
+    /// Section `motion`.
+    pub motion: MotionConfig,
+    /// Section `policy`.
+    pub policy: PolicyConfig,
 }
 
 /// Reads and checks every section, and writes its defaults out into `config`.
-pub(crate) fn resolve(config: &mut Config) -> Result<Resolved> {
+pub fn resolve(config: &mut Config) -> Result<Resolved> {
     config.check_sections(&SECTIONS)?;
     let run = settle(config, "run", RunConfig::validate)?;
     let mut fleet = settle(config, "fleet", FleetConfig::validate)?;
@@ -67,7 +71,7 @@ pub(crate) fn resolve(config: &mut Config) -> Result<Resolved> {
 
 /// Makes the files that the configuration names absolute: a preset's start from its own folder,
 /// those of `--set` from the present one. The run's processes start wherever they like.
-pub(crate) fn anchor_files(config: &mut Config, preset: Option<&Path>) -> Result<()> {
+pub fn anchor_files(config: &mut Config, preset: Option<&Path>) -> Result<()> {
     let Some(Value::Array(clips)) = config.given("motion.clips") else {
         return Ok(());
     };
@@ -89,7 +93,7 @@ pub(crate) fn anchor_files(config: &mut Config, preset: Option<&Path>) -> Result
 
 /// The first lines in which two resolved configurations differ, the one that is there and the one that is meant; a
 /// line that one of them has not is empty.
-pub(crate) fn difference(theirs: &Config, ours: &Config) -> Option<(String, String)> {
+pub fn difference(theirs: &Config, ours: &Config) -> Option<(String, String)> {
     let (theirs, ours) = (theirs.to_toml(), ours.to_toml());
     let (mut theirs, mut ours) = (theirs.lines(), ours.lines());
     loop {

@@ -16,7 +16,7 @@ const JUDGE: &str = "judge.bin";
 const TOGETHER: usize = 1_024;
 
 /// A discriminator with memory for what it has seen and for windows that wait to be scored.
-pub(crate) struct Judge {
+pub struct Judge {
     learning: Learning,
     /// States that a window has.
     frames: usize,
@@ -31,7 +31,7 @@ pub(crate) struct Judge {
 
 impl Judge {
     /// The discriminator of a checkpoint.
-    pub(crate) fn of(kept: &Kept) -> Result<Self> {
+    pub fn of(kept: &Kept) -> Result<Self> {
         let mut config = kept.learning.clone();
         let frames = config.discriminator.frames;
         let sees_command = config.discriminator.command_blur.is_some();
@@ -58,7 +58,7 @@ impl Judge {
     }
 
     /// What a shipped policy's folder holds of it: name and bytes.
-    pub(crate) fn part(&self) -> (&'static str, Vec<u8>) {
+    pub fn part(&self) -> (&'static str, Vec<u8>) {
         (JUDGE, self.learning.save_judge())
     }
 

@@ -3,8 +3,10 @@
 //! The policy acts without noise. A robot that fell counts until it fell. Episodes are spread over
 //! threads; the seed alone decides the result.
 
+#![forbid(unsafe_code)]
+
 mod episodes;
-pub(crate) mod judge;
+mod judge;
 mod pictures;
 mod progress;
 mod reference;
@@ -12,7 +14,7 @@ mod relearned;
 mod report;
 mod scenario;
 mod spread;
-pub(crate) mod subject;
+mod subject;
 mod table;
 mod tally;
 
@@ -24,16 +26,16 @@ use anyhow::{Context, Result};
 use clap::builder::PossibleValuesParser;
 use serde_json::Value;
 use sim::randomization::ROWS;
+use terminal::console::{self, Console};
+use terminal::failure::usage;
+use terminal::{Engine, Place};
 
-use crate::console::{self, Console};
-use crate::engine::Engine;
-use crate::failure::usage;
-use crate::place::Place;
 use episodes::{Conditions, Unit, Walker};
+pub use judge::Judge;
 use progress::Progress;
 use report::Report;
 use scenario::Scenario;
-use subject::{Kept, Subject};
+pub use subject::{Kept, Subject};
 use tally::Tally;
 
 const LONG: &str = "\
@@ -57,7 +59,7 @@ checkpoint that is kept and never trained on, best of a long run that walks well
 /// Walk with a trained policy: survival, velocity errors, energy, style, gait
 #[derive(Debug, clap::Args)]
 #[command(long_about = LONG)]
-pub(crate) struct Evaluate {
+pub struct Evaluate {
     /// A run's name or folder, a checkpoint's folder, or the folder of a shipped policy
     run: String,
     #[command(flatten)]
@@ -114,7 +116,7 @@ enum Suite {
 
 /// vx, vy (m/s, heading frame) and yaw rate (rad/s).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Command(pub(crate) [f32; 3]);
+pub struct Command(pub [f32; 3]);
 
 const DEFAULT_COMMANDS: [Command; 2] = [Command([0.5, 0.0, 0.0]), Command([1.0, 0.0, 0.0])];
 
@@ -134,7 +136,8 @@ impl FromStr for Command {
 }
 
 impl Evaluate {
-    pub(crate) fn run(&self) -> Result<()> {
+    /// Walks, and prints and writes how well.
+    pub fn run(&self) -> Result<()> {
         let conditions = self.conditions()?;
         let mut subject = Subject::open(&self.place, &self.run)?;
         subject.task.physics = self.physics.into();
@@ -235,7 +238,7 @@ impl Evaluate {
             .collect();
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let progress = Progress::new(units.iter().map(|(_, unit)| unit.episodes), conditions);
-        let mut console = Console::new();
+        let mut console = Console::on_stderr();
         let parts = spread::spread(
             &units,
             self.threads.unwrap_or(cores),

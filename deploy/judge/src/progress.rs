@@ -3,8 +3,9 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
+use terminal::figures::clock;
+
 use super::episodes::Conditions;
-use crate::figures::clock;
 
 /// How far all threads together have come.
 pub(super) struct Progress {

@@ -60,9 +60,9 @@ fn stand_in(motion: &MotionConfig) -> Dataset {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::place::Place;
     use run::motion::{Learned, Print};
     use std::path::Path;
+    use terminal::Place;
 
     /// The shipped walk as if it had learned from a folder of tables.
     fn walk(place: &Path, clips: &str) -> Kept {

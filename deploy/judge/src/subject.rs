@@ -10,26 +10,31 @@ use policy::{Policy, Shape};
 use run::motion::Learned;
 use run::{Checkpoint, Config, FleetConfig};
 use sim::{Starts, TaskConfig};
+use terminal::Place;
+use terminal::console::say;
+use terminal::failure::usage;
 
 use super::reference::Reference;
 use super::relearned;
-use crate::console::say;
-use crate::failure::usage;
-use crate::place::Place;
 
 /// A checkpoint with its configuration.
-pub(crate) struct Kept {
-    pub(crate) path: PathBuf,
-    pub(crate) iteration: u64,
-    pub(crate) learning: LearningConfig,
+pub struct Kept {
+    /// Its folder.
+    pub path: PathBuf,
+    /// Iterations that it has learnt for.
+    pub iteration: u64,
+    /// The networks and how they learn.
+    pub learning: LearningConfig,
     config: Config,
     checkpoint: Checkpoint,
 }
 
 /// A policy with its task.
-pub(crate) struct Subject {
-    pub(crate) kept: Kept,
-    pub(crate) task: TaskConfig,
+pub struct Subject {
+    /// The checkpoint.
+    pub kept: Kept,
+    /// The task that it is tried by.
+    pub task: TaskConfig,
     motion: MotionConfig,
     /// Made when it is first asked for: most who watch a policy never do.
     reference: OnceLock<Reference>,
@@ -38,7 +43,7 @@ pub(crate) struct Subject {
 impl Kept {
     /// Opens what `name` means: a checkpoint's folder (of a run, or shipped with a `config.toml`
     /// beside its parts), or a run, whose newest checkpoint it is then.
-    pub(crate) fn open(place: &Place, name: &str) -> Result<Self> {
+    pub fn open(place: &Place, name: &str) -> Result<Self> {
         let given = Path::new(name);
         // One of a run is meant as such also where its manifest is gone.
         let among_others = given
@@ -74,14 +79,14 @@ impl Kept {
     }
 
     /// A part of the checkpoint.
-    pub(crate) fn part(&self, name: &str) -> Result<&[u8]> {
+    pub fn part(&self, name: &str) -> Result<&[u8]> {
         self.checkpoint
             .part(name)
             .with_context(|| format!("checkpoint {} has no {name}", self.path.display()))
     }
 
     /// The shape of the policy and its weights in that layout, unchecked.
-    pub(crate) fn weights(&self) -> Result<(Shape, Vec<f32>)> {
+    pub fn weights(&self) -> Result<(Shape, Vec<f32>)> {
         let bytes = self.part("policy.bin")?;
         let flat = bytes
             .as_chunks::<4>()
@@ -93,7 +98,7 @@ impl Kept {
     }
 
     /// The task that it was trained for, as its ramps had it when this checkpoint was written.
-    pub(crate) fn task(&self) -> Result<TaskConfig> {
+    pub fn task(&self) -> Result<TaskConfig> {
         let task: TaskConfig = self.config.checked("task", TaskConfig::validate)?;
         let (first, last) = (task.at(0.0), task.at(f64::MAX));
         // Where nothing moves nobody has to count.
@@ -119,24 +124,24 @@ impl Kept {
     }
 
     /// The configuration that it was trained under.
-    pub(crate) fn config(&self) -> &Config {
+    pub fn config(&self) -> &Config {
         &self.config
     }
 
     /// The name of the run, or of the folder of a shipped policy.
-    pub(crate) fn run_name(&self) -> Result<String> {
+    pub fn run_name(&self) -> Result<String> {
         let home = self.home().canonicalize()?;
         let name = home.file_name();
         Ok(name.map_or_else(String::new, |name| name.to_string_lossy().into_owned()))
     }
 
     /// The folder of its run, or its own if it lies in none.
-    pub(crate) fn home(&self) -> PathBuf {
+    pub fn home(&self) -> PathBuf {
         run_of(&self.path).unwrap_or_else(|| self.path.clone())
     }
 
     /// The motion files that it was learned from, with their hashes; `None` where nothing was written down.
-    pub(crate) fn learned_from(&self) -> Result<Option<Learned>> {
+    pub fn learned_from(&self) -> Result<Option<Learned>> {
         let learned = run::motion::read(&self.home())?;
         let by_then = |learned: &Learned| learned.since <= self.iteration;
         Ok(learned.into_iter().rfind(by_then))
@@ -144,13 +149,14 @@ impl Kept {
 
     /// Where evaluations of it are kept: `evaluation/` in the run's folder, or beside the parts of
     /// a checkpoint that lies in no run.
-    pub(crate) fn evaluations(&self) -> PathBuf {
+    pub fn evaluations(&self) -> PathBuf {
         self.home().join("evaluation")
     }
 }
 
 impl Subject {
-    pub(crate) fn open(place: &Place, name: &str) -> Result<Self> {
+    /// Opens what `name` means, as [`Kept::open`] does.
+    pub fn open(place: &Place, name: &str) -> Result<Self> {
         let kept = Kept::open(place, name)?;
         let motion: MotionConfig = kept.config.section("motion")?;
         Ok(Self {
@@ -162,7 +168,7 @@ impl Subject {
     }
 
     /// The policy of the checkpoint, ready to act.
-    pub(crate) fn policy(&self) -> Result<Policy> {
+    pub fn policy(&self) -> Result<Policy> {
         let (shape, flat) = self.kept.weights()?;
         let mut policy = Policy::new(shape, self.kept.learning.policy.observation_clip);
         policy
@@ -172,7 +178,7 @@ impl Subject {
     }
 
     /// Frames to begin from that go about as `command` asks.
-    pub(crate) fn starts(&self, command: [f32; 3]) -> Starts {
+    pub fn starts(&self, command: [f32; 3]) -> Starts {
         self.reference().starts(command)
     }
 

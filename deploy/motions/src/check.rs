@@ -11,10 +11,10 @@ use motion::quality::{Defect, Examination, Severity, paragraph, severity, speeds
 use motion::strata::{STRATUM, stratum};
 use motion::{Clip, FRAME_SECONDS};
 use serde_json::{Value, json};
+use terminal::console;
 use wording::count;
 
 use super::files::{Sources, describe};
-use crate::console;
 
 /// A speed within the set's range with less than this share of an even share is rare.
 const RARE: f64 = 0.2;

@@ -16,10 +16,9 @@ use anyhow::{Context, Result};
 use clap::Args;
 use motion::import::{self, Format, Imported, Options};
 use motion::{Clip, MotionError, QuaternionOrder};
+use terminal::console::{Console, say};
+use terminal::failure::usage;
 use wording::count;
-
-use crate::console::{Console, say};
-use crate::failure::usage;
 
 /// Files and what they do not say themselves.
 #[derive(Debug, Args)]
@@ -127,7 +126,7 @@ impl Sources {
                 });
             }
             drop(send);
-            let mut console = Console::new();
+            let mut console = Console::on_stderr();
             let all = count(sources.len(), "file");
             for (before, (i, result)) in results.into_iter().enumerate() {
                 if sources.len() > 1 {

@@ -12,13 +12,13 @@ use anyhow::{Context, Result, bail};
 use motion::import::Imported;
 use motion::quality::Examination;
 use serde_json::Value;
+use terminal::console;
+use terminal::failure::usage;
 use wording::count;
 
 use super::files::{Read, Source, Sources, describe, shown};
 use super::output::{self, Output};
 use super::report::{self, Made};
-use crate::console;
-use crate::failure::usage;
 use outcome::{Outcome, Written};
 
 /// The arguments.

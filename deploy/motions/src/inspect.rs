@@ -8,11 +8,11 @@ use g1::{JOINT_TABLE, JOINTS};
 use motion::Clip;
 use motion::quality::{Examination, paragraph};
 use serde_json::{Value, json};
+use terminal::console;
 
 use super::files::{Source, Sources, describe};
 use super::output::{self, Output};
 use super::table;
-use crate::console;
 
 /// The arguments.
 #[derive(Debug, clap::Args)]

@@ -3,6 +3,8 @@
 //! Each subcommand is a file of its own with its arguments and its `run`; what they share (which files,
 //! read how, shown how) has files beside them.
 
+#![forbid(unsafe_code)]
+
 mod check;
 mod files;
 mod import;
@@ -33,7 +35,7 @@ ProtoMotions .motion and .pt, amp-rsl-rl .npy and .npz, DeepMimic and TienKung-L
 /// Import, measure, make and mirror reference motion
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub(crate) struct Motions {
+pub struct Motions {
     #[command(subcommand)]
     action: Action,
 }
@@ -53,7 +55,8 @@ enum Action {
 }
 
 impl Motions {
-    pub(crate) fn run(&self) -> Result<()> {
+    /// Does what was asked for.
+    pub fn run(&self) -> Result<()> {
         match &self.action {
             Action::Import(import) => import.run(),
             Action::Inspect(inspect) => inspect.run(),

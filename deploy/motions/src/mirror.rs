@@ -7,12 +7,12 @@ use anyhow::{Result, bail};
 use motion::Clip;
 use motion::import::Imported;
 use motion::quality::{Account, Defect, Examination, paragraph};
+use terminal::console;
 
 use super::files::{Source, Sources, describe};
 use super::output::{self, Output};
 use super::report::{self, Made};
 use super::table;
-use crate::console;
 
 /// The arguments.
 #[derive(Debug, clap::Args)]

@@ -12,10 +12,10 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use motion::{Clip, export};
 use serde_json::Value;
+use terminal::failure::usage;
 
 use super::files::shown;
 use super::{plots, report};
-use crate::failure::usage;
 
 /// Reports are a few kilobytes; what is larger is none.
 const LARGEST_REPORT: u64 = 16 << 20;

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use motion::{Clip, Quality, gait};
+use terminal::console;
+use terminal::failure::usage;
 
 use super::output::{self, Output};
 use super::table;
-use crate::console;
-use crate::failure::usage;
 
 /// The arguments.
 #[derive(Debug, clap::Args)]

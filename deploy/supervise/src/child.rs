@@ -4,7 +4,7 @@
 //! and is tested as one.
 
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
@@ -12,10 +12,7 @@ use anyhow::{Context, Result};
 use rustix::process::{Pid, Signal, kill_process};
 use tokio::io::{AsyncBufReadExt, BufReader};
 use tokio::process::Command;
-use tokio::runtime::Runtime;
 use tokio::sync::mpsc::UnboundedSender;
-
-use crate::failure::usage;
 
 /// A program that lived less has lived briefly.
 const BRIEF: Duration = Duration::from_secs(10);
@@ -25,14 +22,6 @@ const MOST_IDLE_LIVES: u32 = 5;
 
 /// So many brief lives in a row, and it is given up whatever it did in them.
 const MOST_BRIEF_LIVES: u32 = 40;
-
-/// The loop of who starts programs. One thread: the kernel ties a child's life to the thread that started it.
-pub(crate) fn runtime() -> Result<Runtime> {
-    tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build()
-        .context("starting the loop that follows programs")
-}
 
 /// What a death means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -224,98 +213,5 @@ fn verdict(status: ExitStatus, lives: Lives, restarts: u32) -> Verdict {
     Verdict::Restart(Duration::from_millis(100 << doublings))
 }
 
-/// The program `name`, which lies beside the present one.
-pub(crate) fn program(name: &str) -> Result<PathBuf> {
-    let here = std::env::current_exe().context("finding this program's own path")?;
-    let folder = here.parent().unwrap_or(Path::new("."));
-    let path = folder.join(name);
-    if path.is_file() {
-        Ok(path)
-    } else {
-        Err(usage(format!(
-            "{name} is not in {}; build all programs, as deploy/local.sh does",
-            folder.display()
-        )))
-    }
-}
-
-/// "was killed by signal 9 (SIGKILL)", "failed with status 1".
-pub(crate) fn describe(status: ExitStatus) -> String {
-    use std::os::unix::process::ExitStatusExt;
-    match (status.code(), status.signal()) {
-        (Some(0), _) => "ended".to_owned(),
-        (Some(code), _) => format!("failed with status {code}"),
-        (None, Some(signal)) => match of_signal(signal) {
-            Some((name, _)) => format!("was killed by signal {signal} ({name})"),
-            None => format!("was killed by signal {signal}"),
-        },
-        (None, None) => "ended in an unknown way".to_owned(),
-    }
-}
-
-/// A signal's name, and what usually is behind it.
-fn of_signal(signal: i32) -> Option<(&'static str, &'static str)> {
-    let bug = "that is a bug of the program";
-    Some(match Signal::from_named_raw(signal)? {
-        Signal::ILL => (
-            "SIGILL",
-            "this processor lacks an instruction that the program was built for: build it on this machine",
-        ),
-        Signal::ABORT => ("SIGABRT", bug),
-        Signal::BUS => ("SIGBUS", "look whether /dev/shm or the disk is full"),
-        Signal::FPE => ("SIGFPE", bug),
-        Signal::KILL => (
-            "SIGKILL",
-            "somebody sent it, or the kernel, as it does when memory runs out",
-        ),
-        Signal::SEGV => ("SIGSEGV", bug),
-        Signal::TERM => ("SIGTERM", "somebody sent it"),
-        Signal::HUP => ("SIGHUP", "its terminal was closed"),
-        Signal::INT => ("SIGINT", "somebody sent it"),
-        Signal::XCPU => ("SIGXCPU", "its limit of processor time was reached"),
-        Signal::XFSZ => ("SIGXFSZ", "its limit of the size of files was reached"),
-        _ => return None,
-    })
-}
-
-/// What is known of a death: the end, the last words if there were any, the log if this life wrote anything to it, else
-/// what usually is behind such an end. `before` is the length of the log, in bytes, when this life began.
-pub(crate) fn account(status: ExitStatus, said: Option<&str>, log: &Path, before: u64) -> String {
-    use std::os::unix::process::ExitStatusExt;
-    let mut account = describe(status);
-    let length = std::fs::metadata(log).ok().map(|facts| facts.len());
-    let place = log.display();
-    if let Some(said) = said {
-        account += &format!(": {}", wording::said(said));
-    }
-    if length > Some(before) {
-        return format!("{account}; see {place}");
-    }
-    let cause = status.signal().and_then(of_signal);
-    if let (None, Some((_, cause))) = (said, cause) {
-        account += &format!("; {cause}");
-    }
-    if said.is_none() {
-        account += &match length {
-            None => format!("; it said nothing and {place} was never made"),
-            Some(0) => format!("; it said nothing and {place} is empty"),
-            Some(_) => format!("; it said nothing, and nothing of this time is in {place}"),
-        };
-    }
-    account
-}
-
-/// The last thing that stands in a log since it was `before` bytes long: what a program of ours said as it failed, else its
-/// last line.
-pub(crate) fn last_words(log: &Path, before: u64) -> Option<String> {
-    let bytes = std::fs::read(log).ok()?;
-    let said = String::from_utf8_lossy(bytes.get(usize::try_from(before).ok()?..)?);
-    let mut lines = said.lines().rev().filter(|line| !line.trim().is_empty());
-    let last = lines.clone().next()?;
-    let complaint = lines.find(|line| line.starts_with("ampco: "));
-    Some(complaint.unwrap_or(last).trim().to_owned())
-}
-
 #[cfg(test)]
-#[path = "child/tests.rs"]
 mod tests;

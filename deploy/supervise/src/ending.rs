@@ -5,13 +5,13 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, bail};
 use protocol::DomainError;
 use rustix::process::Signal;
+use terminal::figures::clock;
 use tokio::time::{interval, sleep};
 use wording::count;
 
 use super::stop::Stop;
 use super::{Group, LEARNER, LOOK, Reason, is_actor};
-use crate::child;
-use crate::figures::clock;
+use crate::programs;
 
 /// Actors that the learner has told to save and stop get this long before they are told again.
 const GRACE: Duration = Duration::from_secs(5);
@@ -60,7 +60,7 @@ impl Group<'_> {
                 let log = super::log(self.launch.folder, &role);
                 let before = self.logged.get(&role).copied().unwrap_or(0);
                 let said = self.said.get(&role).map(String::as_str);
-                let account = child::account(status, said, &log, before);
+                let account = programs::account(status, said, &log, before);
                 bail!("{role} is given up; it {account}")
             }
             _ if forced => Ok(()),

@@ -3,6 +3,8 @@
 //! One thread and one loop. The thread matters: the kernel ties a child's life to the thread that
 //! started it. The loop waits for signals, for words of the children and for the next look.
 
+#![forbid(unsafe_code)]
+
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -14,19 +16,21 @@ use protocol::Domain;
 use run::metrics::Tail;
 use run::{FleetConfig, Folder, RunConfig};
 use rustix::process::{Pid, Signal, kill_process};
+use terminal::console::Console;
+use terminal::figures::{Outlook, Pace, clock};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::time::{MissedTickBehavior, interval};
 use wording::count;
 
-use crate::child::{self, Child, Verdict, Words};
-use crate::console::Console;
-use crate::figures::{Outlook, Pace, clock};
+use crate::child::{Child, Verdict, Words};
 
+mod child;
 mod ending;
 mod orphans;
+pub mod programs;
 mod stop;
 
-pub(crate) use stop::Stop;
+pub use stop::Stop;
 
 /// Between two looks at the children.
 const LOOK: Duration = Duration::from_millis(50);
@@ -39,12 +43,15 @@ const SCHEDULER: &str = "scheduler";
 
 /// What is to be supervised.
 #[derive(Debug)]
-pub(crate) struct Launch<'a> {
-    pub(crate) folder: &'a Folder,
-    pub(crate) run: &'a RunConfig,
-    pub(crate) fleet: &'a FleetConfig,
+pub struct Launch<'a> {
+    /// The run.
+    pub folder: &'a Folder,
+    /// How long it may take.
+    pub run: &'a RunConfig,
+    /// How many actors there are to be.
+    pub fleet: &'a FleetConfig,
     /// Whether the learner goes on from a checkpoint.
-    pub(crate) resume: bool,
+    pub resume: bool,
 }
 
 /// Why the group ends.
@@ -63,8 +70,8 @@ enum Reason {
 }
 
 /// Starts the group, watches it to its end, and leaves nothing behind.
-pub(crate) fn supervise(launch: &Launch<'_>) -> Result<()> {
-    child::runtime()?.block_on(async {
+pub fn supervise(launch: &Launch<'_>) -> Result<()> {
+    programs::runtime()?.block_on(async {
         let mut stop = Stop::install()?;
         let domain = Domain::for_run(launch.folder.path())?;
         orphans::clear(launch.folder, &domain).await?;
@@ -102,7 +109,7 @@ impl<'a> Group<'a> {
             domain,
             children: children(launch, &sender)?,
             words,
-            console: Console::new(),
+            console: Console::on_stderr(),
             tail: if launch.resume {
                 Tail::from_end(&metrics)
             } else {
@@ -142,7 +149,7 @@ impl<'a> Group<'a> {
                 continue;
             };
             let child = &mut self.children[index];
-            let end = child::describe(status);
+            let end = programs::describe(status);
             match verdict {
                 Verdict::Done if child.role == LEARNER => return Ok(Some(Reason::Complete)),
                 Verdict::Done if child.role == SCHEDULER => {
@@ -274,7 +281,7 @@ fn children(launch: &Launch<'_>, words: &UnboundedSender<Words>) -> Result<Vec<C
     let child = |role: String, program: &str, arguments| -> Result<Child> {
         Ok(Child::new(
             role,
-            child::program(program)?,
+            programs::find(program)?,
             arguments,
             words.clone(),
         ))
@@ -313,7 +320,7 @@ fn log(folder: &Folder, role: &str) -> PathBuf {
 }
 
 /// The argument that every program of the group takes.
-pub(crate) fn run_dir(folder: &Folder) -> Vec<OsString> {
+pub fn run_dir(folder: &Folder) -> Vec<OsString> {
     vec!["--run-dir".into(), folder.path().into()]
 }
 

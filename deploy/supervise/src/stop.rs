@@ -5,14 +5,15 @@ use tokio::signal::unix::{Signal, SignalKind, signal};
 
 /// The signals that ask for the end. A closed terminal asks too.
 #[derive(Debug)]
-pub(crate) struct Stop {
+pub struct Stop {
     interrupt: Signal,
     terminate: Signal,
     hangup: Signal,
 }
 
 impl Stop {
-    pub(crate) fn install() -> Result<Self> {
+    /// Catches the signals from here on.
+    pub fn install() -> Result<Self> {
         let install = |kind| signal(kind).context("installing the handlers of signals");
         Ok(Self {
             interrupt: install(SignalKind::interrupt())?,
@@ -22,7 +23,7 @@ impl Stop {
     }
 
     /// Returns when the end is asked for, once for each time.
-    pub(crate) async fn requested(&mut self) {
+    pub async fn requested(&mut self) {
         tokio::select! {
             _ = self.interrupt.recv() => {}
             _ = self.terminate.recv() => {}

@@ -13,10 +13,10 @@ use wording::harmless;
 const EVERY: Duration = Duration::from_secs(5);
 
 /// What stands between two figures of a line.
-pub(crate) const BETWEEN: &str = " · ";
+pub const BETWEEN: &str = " · ";
 
 /// Says something where no line is rewritten in place.
-pub(crate) fn say(message: &str) {
+pub fn say(message: &str) {
     // Whoever watched may have closed the terminal.
     let _ = writeln!(io::stderr(), "{}", harmless(message));
 }
@@ -24,15 +24,15 @@ pub(crate) fn say(message: &str) {
 /// Standard output. Who reads it may have seen enough, as `head` has after ten lines: the rest is dropped, and what a
 /// command writes elsewhere is written all the same. Any other refusal, as of a full disk, is an error.
 #[derive(Debug)]
-pub(crate) struct Results<W = StdoutLock<'static>>(W);
+pub struct Results<W = StdoutLock<'static>>(W);
 
 /// Where a command writes what it was asked for.
-pub(crate) fn results() -> Results {
+pub fn results() -> Results {
     Results(io::stdout().lock())
 }
 
 /// Prints the whole of a result, which ends in a line break.
-pub(crate) fn print(result: &str) -> Result<()> {
+pub fn print(result: &str) -> Result<()> {
     let mut out = results();
     out.write_all(result.as_bytes())
         .and_then(|()| out.flush())
@@ -40,7 +40,7 @@ pub(crate) fn print(result: &str) -> Result<()> {
 }
 
 /// Hands on what is still held back; called once, at the end.
-pub(crate) fn finish_results() -> Result<()> {
+pub fn finish_results() -> Result<()> {
     results().flush().context("writing to standard output")
 }
 
@@ -62,8 +62,9 @@ fn unless_gone<T>(written: io::Result<T>, enough: T) -> io::Result<T> {
     }
 }
 
+/// A line on standard error that is rewritten in place, and messages above it.
 #[derive(Debug)]
-pub(crate) struct Console {
+pub struct Console {
     out: Stderr,
     terminal: bool,
     /// The line in place, to be written again under a message.
@@ -74,7 +75,8 @@ pub(crate) struct Console {
 }
 
 impl Console {
-    pub(crate) fn new() -> Self {
+    /// Nothing shown yet.
+    pub fn on_stderr() -> Self {
         let out = io::stderr();
         let terminal = out.is_terminal();
         Self {
@@ -87,7 +89,7 @@ impl Console {
     }
 
     /// Shows the present state: in place on a terminal, else once in a while and only if it changed.
-    pub(crate) fn show(&mut self, line: &str, now: Instant) {
+    pub fn show(&mut self, line: &str, now: Instant) {
         if self.terminal {
             line.clone_into(&mut self.shown);
             self.rewrite("");
@@ -99,7 +101,7 @@ impl Console {
     }
 
     /// Says something that stays.
-    pub(crate) fn say(&mut self, message: &str) {
+    pub fn say(&mut self, message: &str) {
         let message = harmless(message);
         if self.terminal {
             self.rewrite(&format!("{message}\n"));
@@ -109,7 +111,7 @@ impl Console {
     }
 
     /// Leaves the last state standing and begins a line of its own for what follows.
-    pub(crate) fn finish(&mut self) {
+    pub fn finish(&mut self) {
         if self.rows > 0 {
             self.write("\n");
         }

@@ -4,7 +4,7 @@ use sim::Physics;
 
 /// What moves the robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum Engine {
+pub enum Engine {
     /// The general engine, one robot at a time: the judge
     Rapier,
     /// The solver for this one robot, sixteen at a time

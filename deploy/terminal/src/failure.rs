@@ -6,7 +6,7 @@ use run::{ConfigError, FolderError};
 
 /// Something that the user can mend by typing something else.
 #[derive(Debug)]
-pub(crate) struct Usage(pub(crate) String);
+pub struct Usage(String);
 
 impl std::fmt::Display for Usage {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -17,12 +17,12 @@ impl std::fmt::Display for Usage {
 impl std::error::Error for Usage {}
 
 /// A [`Usage`] failure as an `anyhow` error.
-pub(crate) fn usage(words: impl Into<String>) -> anyhow::Error {
+pub fn usage(words: impl Into<String>) -> anyhow::Error {
     Usage(words.into()).into()
 }
 
 /// 2 when the arguments or the configuration are wrong, else 1.
-pub(crate) fn exit_code(error: &anyhow::Error) -> ExitCode {
+pub fn exit_code(error: &anyhow::Error) -> ExitCode {
     if is_usage(error) {
         ExitCode::from(2)
     } else {

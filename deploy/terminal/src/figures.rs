@@ -13,27 +13,39 @@ use wording::count;
 /// What is shown of one line of `metrics.jsonl`; whatever a line does not have is not shown.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default)]
-pub(crate) struct Figures {
-    pub(crate) iteration: u64,
-    pub(crate) samples: u64,
-    pub(crate) style_mean: Option<f64>,
-    pub(crate) task_mean: Option<f64>,
-    pub(crate) style_weight: Option<f64>,
-    pub(crate) task_weight: Option<f64>,
-    pub(crate) phase: Option<u32>,
-    pub(crate) episode_length: Option<f64>,
+pub struct Figures {
+    /// Iterations done.
+    pub iteration: u64,
+    /// Transitions learnt from since the run began.
+    pub samples: u64,
+    /// Mean style reward of the iteration.
+    pub style_mean: Option<f64>,
+    /// Mean task reward of the iteration.
+    pub task_mean: Option<f64>,
+    /// Mean weight of the style reward.
+    pub style_weight: Option<f64>,
+    /// Mean weight of the task reward.
+    pub task_weight: Option<f64>,
+    /// 1 or 2.
+    pub phase: Option<u32>,
+    /// Mean length of the episodes that ended, in steps.
+    pub episode_length: Option<f64>,
     /// What the gait is, in words.
-    pub(crate) gait: Option<String>,
-    pub(crate) actors: Option<u64>,
-    pub(crate) timing: Timing,
+    pub gait: Option<String>,
+    /// Actors whose rollouts the iteration is made of.
+    pub actors: Option<u64>,
+    /// How long it took.
+    pub timing: Timing,
 }
 
 /// How long it took.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default)]
-pub(crate) struct Timing {
-    pub(crate) samples_per_second: Option<f64>,
-    pub(crate) iteration_seconds: Option<f64>,
+pub struct Timing {
+    /// Transitions per second, from iteration to iteration.
+    pub samples_per_second: Option<f64>,
+    /// Seconds of the whole iteration.
+    pub iteration_seconds: Option<f64>,
     broadcast_seconds: f64,
     gather_seconds: f64,
     copy_seconds: f64,
@@ -57,7 +69,7 @@ struct Learning {
 
 impl Timing {
     /// Where an iteration's time went, in one line; `None` where a line does not say.
-    pub(crate) fn split(&self) -> Option<String> {
+    pub fn split(&self) -> Option<String> {
         let whole = self.iteration_seconds.filter(|seconds| *seconds > 0.0)?;
         let ms = |seconds: f64| format!("{:.0}", 1e3 * seconds);
         let mut line = format!(
@@ -84,22 +96,24 @@ impl Timing {
 
 /// What the figures do not say but one who watches wants to know.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Outlook {
+pub struct Outlook {
     /// The iteration at which the run is complete; 0 = none.
-    pub(crate) iterations: u64,
-    pub(crate) actors_alive: usize,
-    pub(crate) left: Option<Duration>,
+    pub iterations: u64,
+    /// Actors that are alive now.
+    pub actors_alive: usize,
+    /// Time until the end, where there is one.
+    pub left: Option<Duration>,
 }
 
 impl Figures {
     /// From a line; one that is no record of ours has no figures.
-    pub(crate) fn read(line: &Value) -> Option<Self> {
+    pub fn read(line: &Value) -> Option<Self> {
         line["iteration"].as_u64()?;
         serde_json::from_value(line.clone()).ok()
     }
 
     /// One line for one who watches.
-    pub(crate) fn line(&self, outlook: &Outlook) -> String {
+    pub fn line(&self, outlook: &Outlook) -> String {
         let mut line = format!("iteration {}", self.iteration);
         if outlook.iterations > 0 {
             let _ = write!(line, "/{}", outlook.iterations);
@@ -131,7 +145,7 @@ impl Figures {
 }
 
 /// How the episodes of an iteration ended, by cause; `None` where a line does not say.
-pub(crate) fn ends(line: &Value) -> Option<String> {
+pub fn ends(line: &Value) -> Option<String> {
     let count = |cause: Cause| {
         let count = line[format!("termination/{}", cause.name())].as_u64()?;
         Some(format!("{} {count}", cause.name().replace('_', "-")))
@@ -141,7 +155,7 @@ pub(crate) fn ends(line: &Value) -> Option<String> {
 }
 
 /// What the terms of the task came to, by name; `None` where a line does not say.
-pub(crate) fn terms(line: &Value) -> Option<String> {
+pub fn terms(line: &Value) -> Option<String> {
     let told = line.as_object()?.iter().filter_map(|(key, value)| {
         let named = key.starts_with("reward/") || key.starts_with("gate/");
         let mean = value.as_f64().filter(|_| named)?;
@@ -153,15 +167,16 @@ pub(crate) fn terms(line: &Value) -> Option<String> {
 
 /// The newest figures and the pace of the last iterations.
 #[derive(Debug, Default)]
-pub(crate) struct Pace {
-    pub(crate) newest: Option<Figures>,
+pub struct Pace {
+    /// Those of the newest line.
+    pub newest: Option<Figures>,
     /// Exponential mean of the seconds of an iteration, over about ten.
     seconds: Option<f64>,
 }
 
 impl Pace {
     /// Takes one more line of the metrics.
-    pub(crate) fn take(&mut self, line: &Value) {
+    pub fn take(&mut self, line: &Value) {
         let Some(figures) = Figures::read(line) else {
             return;
         };
@@ -175,12 +190,12 @@ impl Pace {
     }
 
     /// Seconds of an iteration, once one was seen.
-    pub(crate) fn seconds(&self) -> Option<f64> {
+    pub fn seconds(&self) -> Option<f64> {
         self.seconds
     }
 
     /// Time until iteration `last` at this pace; `None` when there is no such end or no pace yet.
-    pub(crate) fn until(&self, last: u64) -> Option<Duration> {
+    pub fn until(&self, last: u64) -> Option<Duration> {
         let done = self.newest.as_ref()?.iteration;
         let seconds = self.seconds? * last.checked_sub(done)? as f64;
         if last == 0 {
@@ -192,7 +207,7 @@ impl Pace {
 }
 
 /// "1:02:03" or "2:03".
-pub(crate) fn clock(time: Duration) -> String {
+pub fn clock(time: Duration) -> String {
     let seconds = time.as_secs();
     let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
     if hours > 0 {

@@ -10,14 +10,14 @@ use anyhow::{Context, Result};
 use crate::failure::usage;
 
 /// The text of a file; one that is no text is named for what it is.
-pub(crate) fn read_text(path: &Path) -> Result<String> {
+pub fn read_text(path: &Path) -> Result<String> {
     let shown = path.display();
     let bytes = std::fs::read(path).map_err(|error| usage(format!("{shown}: {error}")))?;
     wording::text(bytes).map_err(|foreign| usage(format!("{shown}: {foreign}")))
 }
 
 /// Refuses a place that nothing can be written to, before there is anything that would be lost.
-pub(crate) fn check_place(path: &Path) -> Result<()> {
+pub fn check_place(path: &Path) -> Result<()> {
     let shown = path.display();
     if path.is_dir() {
         return Err(usage(format!("{shown} is a folder; name a file in it")));
@@ -32,7 +32,7 @@ pub(crate) fn check_place(path: &Path) -> Result<()> {
 }
 
 /// Writes beside, then renames: a file of that name is always whole.
-pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     check_place(path)?;
     let writing = || format!("writing {}", path.display());
     if std::fs::metadata(path).is_ok_and(|facts| !facts.is_file()) {

@@ -10,15 +10,15 @@ use crate::failure::usage;
 
 /// The folder of runs.
 #[derive(Debug, Clone, clap::Args)]
-pub(crate) struct Place {
+pub struct Place {
     /// Folder in which the runs are
     #[arg(long, value_name = "DIR", default_value = "runs")]
-    pub(crate) runs_dir: PathBuf,
+    pub runs_dir: PathBuf,
 }
 
 impl Place {
     /// The run that is meant: a folder's path, a name in the folder of runs, or the newest.
-    pub(crate) fn find(&self, run: Option<&str>) -> Result<Folder> {
+    pub fn find(&self, run: Option<&str>) -> Result<Folder> {
         match run {
             Some(path) if is_path(Path::new(path)) => open(Path::new(path)),
             Some(name) => Ok(Folder::find(&self.runs_dir, name)?),
@@ -45,7 +45,7 @@ impl Place {
     }
 
     /// The first of `<stem>-1`, `<stem>-2`, … that is not taken.
-    pub(crate) fn free_name(&self, stem: &str) -> String {
+    pub fn free_name(&self, stem: &str) -> String {
         let free = |number: &u32| !self.runs_dir.join(format!("{stem}-{number}")).exists();
         let number = (1..).find(free).expect("fewer runs than numbers");
         format!("{stem}-{number}")

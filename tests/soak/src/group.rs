@@ -10,10 +10,10 @@ use anyhow::{Context, Result, bail};
 use run::Folder;
 use run::metrics::Tail;
 use rustix::process::{Pid, Signal, kill_process};
+use supervise::programs;
+use terminal::Place;
 
 use super::Soak;
-use crate::child;
-use crate::place::Place;
 
 const SUPERVISOR: &str = "supervisor";
 
@@ -91,8 +91,8 @@ impl Group {
         };
         if status.signal() != Some(Signal::KILL.as_raw()) {
             let log = self.folder.logs().join("train.log");
-            let said = child::last_words(&log, 0);
-            let account = child::account(status, said.as_deref(), &log, 0);
+            let said = programs::last_words(&log, 0);
+            let account = programs::account(status, said.as_deref(), &log, 0);
             bail!("ampco train {account}");
         }
         self.train = start(&self.place, &self.folder, &["--resume".to_owned()])?;
@@ -190,7 +190,7 @@ fn start(place: &Place, folder: &Folder, arguments: &[String]) -> Result<Child> 
         .create(true)
         .open(&path)
         .with_context(|| format!("opening {}", path.display()))?;
-    Command::new(child::program("ampco")?)
+    Command::new(programs::find("ampco")?)
         .args(["train", "--run", &folder.name(), "--runs-dir"])
         .arg(&place.runs_dir)
         .args(arguments)

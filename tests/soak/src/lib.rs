@@ -4,6 +4,8 @@
 //! checkpoints, files. What became of every rollout it reads at the end from the journals that actors
 //! and learner have written.
 
+#![forbid(unsafe_code)]
+
 mod figures;
 mod group;
 mod outcome;
@@ -15,11 +17,11 @@ use clap::Args;
 use protocol::Shutdown;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use terminal::Place;
+use terminal::console::{self, say};
+use terminal::failure::usage;
 use wording::count;
 
-use crate::console::{self, say};
-use crate::failure::usage;
-use crate::place::Place;
 use figures::Figures;
 use group::Group;
 use outcome::{Outcome, Victim};
@@ -52,7 +54,7 @@ const PROMISED_SECONDS: f64 = 5.0;
 /// status 1 if the group took longer than 5 s to be whole, a rollout is unaccounted for, an earlier
 /// checkpoint than the newest was gone on from, or anything is left at the end.
 #[derive(Debug, Args)]
-pub(crate) struct Soak {
+pub struct Soak {
     /// End after so many minutes
     #[arg(long, value_name = "M")]
     minutes: Option<f64>,
@@ -76,7 +78,8 @@ pub(crate) struct Soak {
 }
 
 impl Soak {
-    pub(crate) fn run(&self) -> Result<()> {
+    /// Trains, kills, and prints what became of it.
+    pub fn run(&self) -> Result<()> {
         let is_time = |minutes: f64| minutes > 0.0 && minutes <= LONGEST_MINUTES;
         if self.minutes.is_some_and(|minutes| !is_time(minutes)) {
             return Err(usage(format!(

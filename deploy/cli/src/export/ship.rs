@@ -7,13 +7,11 @@ use std::path::{Path, PathBuf};
 
 use amp::Learning;
 use anyhow::{Context, Result};
+use judge::{Judge, Kept};
 use motion::{ClipConfig, MotionConfig};
 use run::motion::{Learned, Print};
 use run::{Checkpoints, Config};
-
-use crate::evaluate::judge::Judge;
-use crate::evaluate::subject::Kept;
-use crate::failure::usage;
+use terminal::failure::usage;
 
 const CRITIC: &str = "critic.bin";
 
@@ -128,8 +126,8 @@ fn named(learned: Learned) -> Learned {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluate::subject::Subject;
-    use crate::place::Place;
+    use judge::Subject;
+    use terminal::Place;
 
     #[test]
     fn a_shipped_policy_opens_like_a_checkpoint_and_ships_again() {

@@ -2,13 +2,13 @@
 
 use anyhow::Result;
 use g1::ACTION;
+use judge::Subject;
 use playback::{Frame, Recording};
 use sim::world::CONTROL_STEP;
 use sim::{FallConfig, Fleet, RandomizationConfig, Starts, StepRows, TimeOutConfig};
 use vocabulary::{RUNNING, Ramp};
 
 use super::Play;
-use crate::evaluate::subject::Subject;
 
 /// Height of the pelvis at which a fall has been seen to its end, m.
 const LYING: f32 = 0.25;

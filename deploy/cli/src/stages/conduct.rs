@@ -7,22 +7,21 @@ use std::process::{ExitStatus, Stdio};
 use anyhow::{Context, Result, bail};
 use run::Folder;
 use rustix::process::{Pid, Signal, kill_process};
+use supervise::{Stop, programs};
+use terminal::Place;
+use terminal::console::say;
+use terminal::failure::usage;
 use tokio::process::{Child, Command};
 use wording::count;
 
 use super::plan::{Plan, Planned};
-use crate::child;
-use crate::console::say;
-use crate::failure::usage;
-use crate::place::Place;
-use crate::supervise::Stop;
 
 /// Number of the signal that asks a run to end.
 const INTERRUPT: i32 = Signal::INT.as_raw();
 
 /// Runs what is not done yet.
 pub(super) fn conduct(plan: &Plan, place: &Place) -> Result<()> {
-    child::runtime()?.block_on(async {
+    programs::runtime()?.block_on(async {
         let mut stop = Stop::install()?;
         for stage in &plan.stages {
             check_unchanged(stage, place)?;
@@ -41,7 +40,7 @@ pub(super) fn conduct(plan: &Plan, place: &Place) -> Result<()> {
             // One that is asked to end before it can hear it ends by the signal itself.
             let ended = status.success() || stopped && status.signal() == Some(INTERRUPT);
             if !ended {
-                bail!("stage {run}: `ampco train` {}", child::describe(status));
+                bail!("stage {run}: `ampco train` {}", programs::describe(status));
             }
             if stopped {
                 say("stopped; the same command goes on from here");

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use anyhow::{Context, Result};
+use configuration::{presets, resolve};
 use run::Config;
 use serde::Deserialize;
+use terminal::failure::usage;
+use terminal::file;
 use wording::count;
-
-use crate::failure::usage;
-use crate::{file, presets, resolve};
 
 /// Those that come with the program, by name.
 const EMBEDDED: [(&str, &str); 3] = [

@@ -1,13 +1,13 @@
 //! The dashboard on the screen: four curves, then phase, weights, traffic and processes.
 
 use super::board::{Board, Curve};
-use crate::figures;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Style, Stylize};
 use ratatui::symbols::Marker;
 use ratatui::text::Line;
 use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph};
+use terminal::figures;
 
 /// Draws all of it.
 pub(super) fn board(frame: &mut Frame<'_>, board: &Board) {

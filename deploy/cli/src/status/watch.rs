@@ -8,10 +8,10 @@ use protocol::Shutdown;
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyModifiers};
 use run::{Folder, RunConfig};
+use terminal::failure::usage;
 
 use super::board::{Board, Watcher};
 use super::draw;
-use crate::failure::usage;
 
 /// Time between two looks.
 const EVERY: Duration = Duration::from_millis(250);

@@ -4,15 +4,15 @@
 //! checkpoint cannot take is refused before a byte is written, so that a mistake leaves the run as it was.
 
 use anyhow::{Context, Result};
+use configuration::{presets, resolve};
 use run::checkpoint::CONFIG;
 use run::resume::{self, Change};
 use run::{Checkpoint, Config, Folder, metrics};
 use serde::Deserialize;
+use terminal::console::say;
+use terminal::failure::usage;
 
 use super::{Ready, Train, check};
-use crate::console::say;
-use crate::failure::usage;
-use crate::{presets, resolve};
 
 /// What a run goes on from.
 pub(super) struct GoingOn {

@@ -4,7 +4,7 @@ use anyhow::{Context, Result, anyhow};
 use wording::count;
 
 use super::{Conductor, Job, Task};
-use crate::study::line::{Going, Stand};
+use crate::line::{Going, Stand};
 
 impl Conductor<'_> {
     pub(super) fn stand(&self) -> Stand {

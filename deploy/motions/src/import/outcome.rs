@@ -10,11 +10,11 @@ use motion::Quality;
 use motion::import::Imported;
 use motion::quality::{Defect, Severity, paragraph, severity};
 use serde_json::{Value, json};
+use terminal::console;
 use wording::count;
 
 use super::super::files::{Source, shown};
 use super::super::table;
-use crate::console;
 
 /// Decisions are printed for so many files; for more they are in the reports only.
 const TOLD: usize = 6;

@@ -1,11 +1,11 @@
 //! Where figures are drawn, and what is never drawn over.
 
 use super::*;
-use crate::failure::Usage;
 use clap::Parser;
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
+use terminal::failure::Usage;
 
 #[derive(Debug, Parser)]
 struct Line {

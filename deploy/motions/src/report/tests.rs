@@ -1,7 +1,7 @@
 //! Accounts of mirror images.
 
 use super::*;
-use crate::motions::output::Output;
+use crate::output::Output;
 use motion::gait;
 use std::path::PathBuf;
 

@@ -2,8 +2,9 @@
 
 use std::fs;
 
+use terminal::Place;
+
 use super::super::*;
-use crate::place::Place;
 
 /// A run with a checkpoint of iteration 10, which knows its configuration if `told`.
 fn run(told: bool) -> (tempfile::TempDir, Folder) {
