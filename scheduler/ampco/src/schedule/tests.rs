@@ -6,6 +6,8 @@ use super::*;
 use crate::{ArmKind, CeilingKind, Method, Warning};
 
 mod pause;
+mod reports;
+mod rules;
 
 fn report(iteration: u64, style_mean: f64) -> Report {
     Report {
@@ -228,121 +230,6 @@ fn phase_two_never_returns_and_its_bounds_never_move() {
     assert_eq!(decisions.iter().filter(|d| d.just_switched()).count(), 1);
     // The climb after the switch breaks out again, and changes nothing.
     assert!(decisions[999].breakout_rate.unwrap() > decisions[999].threshold);
-}
-
-#[test]
-fn methods_are_their_rules_in_both_phases() {
-    let rules = |method| {
-        let decisions = run(&ScheduleConfig { method, ..tiny() }, SEVEN);
-        (
-            decisions[0].rule,
-            decisions[6].rule,
-            decisions[6].phase.number(),
-        )
-    };
-    let bounded = Rule::Bounded {
-        lower: 0.05,
-        upper: 0.55,
-    };
-    let guided = Rule::Guided { ceiling: 1.0 };
-    let fixed = |style_weight| Rule::Fixed { style_weight };
-    let mimic = Rule::AdaMimic { ceiling: 1.0 };
-    let by_hand = Rule::Bounded {
-        lower: 0.25,
-        upper: 0.5,
-    };
-    assert_eq!(rules(Method::Ampco), (guided, bounded, 2));
-    assert_eq!(rules(Method::AmpcoWithoutAig), (fixed(0.5), bounded, 2));
-    assert_eq!(rules(Method::AmpcoWithoutRoger), (guided, guided, 2));
-    assert_eq!(
-        rules(Method::Amp { style_weight: 0.7 }),
-        (fixed(0.7), fixed(0.7), 1)
-    );
-    assert_eq!(rules(Method::AdaMimic), (mimic, mimic, 1));
-    assert_eq!(
-        rules(Method::AmpRoger {
-            lower: 0.25,
-            upper: 0.5
-        }),
-        (by_hand, by_hand, 1)
-    );
-}
-
-#[test]
-fn a_running_maximum_follows_the_reward_that_its_rule_listens_to() {
-    let rule = |method| {
-        run(
-            &ScheduleConfig {
-                method,
-                ceiling: CeilingKind::RunningMax,
-                ..short()
-            },
-            [0.25, 0.375, 0.125],
-        )[2]
-        .rule
-    };
-    assert_eq!(rule(Method::Ampco), Rule::Guided { ceiling: 0.375 });
-    assert_eq!(rule(Method::AdaMimic), Rule::AdaMimic { ceiling: 0.5 }); // every report's task mean
-}
-
-#[test]
-fn a_refused_report_changes_nothing() {
-    let stream = noisy(9, 300, |_| 0.3);
-    let undisturbed = run(&short(), stream.clone());
-    let mut schedule = Schedule::new(short()).unwrap();
-    for (i, &reward) in stream.iter().enumerate() {
-        let good = report(i as u64 + 1, reward);
-        for bad in [
-            Report {
-                style_mean: f64::NAN,
-                ..good
-            },
-            Report {
-                style_std: f64::INFINITY,
-                ..good
-            },
-            Report {
-                task_mean: f64::NEG_INFINITY,
-                ..good
-            },
-            Report {
-                episode_share: Some(f64::NAN),
-                ..good
-            },
-        ] {
-            assert!(matches!(
-                schedule.observe(bad),
-                Err(ReportError::NotFinite { .. })
-            ));
-        }
-        assert!(matches!(
-            schedule.observe(Report {
-                style_std: -0.1,
-                ..good
-            }),
-            Err(ReportError::NegativeDeviation { .. })
-        ));
-        assert_eq!(schedule.observe(good), Ok(undisturbed[i]));
-        assert_eq!(schedule.decision(good.iteration), undisturbed[i]);
-        assert_eq!(
-            schedule.observe(good),
-            Err(ReportError::OutOfOrder {
-                iteration: good.iteration,
-                newest: good.iteration
-            })
-        );
-    }
-}
-
-#[test]
-fn equal_reports_give_equal_decisions() {
-    let config = ScheduleConfig {
-        arm: ArmKind::AfterRise,
-        ceiling: CeilingKind::RunningMax,
-        ..short()
-    };
-    let stream = noisy(11, 1000, |t| 0.2 + 0.2 * (t / 300.0).min(1.0));
-    assert_eq!(run(&config, stream.clone()), run(&config, stream));
 }
 
 #[test]
