@@ -3,6 +3,8 @@
 //! Separate because samples are the project's scarcest good: this says how fast they can come at
 //! all, by the code that an actor runs (`sim::Fleet`, `policy::Policy`) with nothing around it.
 
+mod measured;
+
 use std::time::Instant;
 
 use amp::PolicyConfig;
@@ -14,12 +16,12 @@ use serde_json::{Value, json};
 use sim::{Fleet, Physics, RandomizationConfig, Starts, StepRows, TaskConfig};
 use terminal::Engine;
 
+use measured::{Measured, cpu_seconds, resident_bytes};
+
 /// Standard deviation of the benchmark's actions; 0.25 rad per unit, as a policy in training moves.
 const EXPLORATION: f32 = 0.5;
 /// Steps until a robot's random actions come again.
 const DRAWN: usize = 1_000;
-/// The kernel's account of this thread: nanoseconds on a core, then nanoseconds waiting for one.
-const ACCOUNT: &str = "/proc/thread-self/schedstat";
 
 /// Control steps per second of one core: physics and task alone, then with the policy.
 #[derive(Debug, clap::Args)]
@@ -183,70 +185,6 @@ impl SimBench {
             .map(|(now, before)| now.saturating_sub(before));
         Ok(measured)
     }
-}
-
-#[derive(Default)]
-struct Measured {
-    /// Control steps of one robot.
-    steps: usize,
-    wall: f64,
-    /// None where the kernel keeps no account.
-    cpu: Option<f64>,
-    inference: f64,
-    resets: usize,
-    faults: u64,
-    /// Growth of the process's memory; of the whole process, so that only one fleet tells its own.
-    bytes: Option<usize>,
-}
-
-impl Measured {
-    fn add(&mut self, other: Self) {
-        self.steps += other.steps;
-        self.wall += other.wall;
-        self.cpu = match (self.cpu, other.cpu) {
-            (Some(a), Some(b)) => Some(a + b),
-            (None, cpu) | (cpu, None) => cpu,
-        };
-        self.inference += other.inference;
-        self.resets += other.resets;
-        self.faults += other.faults;
-        self.bytes = other.bytes.or(self.bytes);
-    }
-
-    /// The mean of several.
-    fn over(self, fleets: usize) -> Self {
-        let share = fleets as f64;
-        Self {
-            steps: self.steps / fleets,
-            wall: self.wall / share,
-            cpu: self.cpu.map(|cpu| cpu / share),
-            inference: self.inference / share,
-            resets: self.resets / fleets,
-            bytes: self.bytes.filter(|_| fleets == 1),
-            ..self
-        }
-    }
-
-    fn per_second(&self, seconds: f64) -> f64 {
-        self.steps as f64 / seconds
-    }
-}
-
-/// Memory of this process that is in the machine's, if the kernel tells.
-fn resident_bytes() -> Option<usize> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status
-        .lines()
-        .find_map(|line| line.strip_prefix("VmRSS:"))?;
-    let kilobytes: usize = line.split_whitespace().next()?.parse().ok()?;
-    Some(1024 * kilobytes)
-}
-
-/// Seconds that this thread has spent on a core.
-fn cpu_seconds() -> Option<f64> {
-    let account = std::fs::read_to_string(ACCOUNT).ok()?;
-    let nanoseconds: f64 = account.split_whitespace().next()?.parse().ok()?;
-    Some(1e-9 * nanoseconds)
 }
 
 /// Room for one step of the fleet.

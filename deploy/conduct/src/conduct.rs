@@ -1,9 +1,10 @@
 //! The runs of a study, one process group after another or several at once, to the end or until it is stopped.
 
+mod outcome;
 mod telling;
 
 use std::collections::VecDeque;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use ::study::StudyFile;
@@ -19,7 +20,6 @@ use tokio::time::{MissedTickBehavior, interval};
 
 use super::folder::StudyFolder;
 use super::group::{self, Standing};
-use super::judgement::Judgement;
 use super::plan::Planned;
 
 /// Between two looks.
@@ -216,88 +216,6 @@ impl<'a> Conductor<'a> {
             return Ok(None);
         };
         Ok(folder.holder("supervisor")?)
-    }
-
-    fn ended(&mut self, job: Job, status: std::process::ExitStatus) -> Result<()> {
-        let planned = &self.planned[job.run];
-        match job.task {
-            Task::Training { .. } => {
-                if Standing::of(planned, self.folder)? == Standing::Done {
-                    let message = format!("{} is done", planned.name);
-                    self.console.say(&message);
-                    self.finished(job.run)
-                } else if !status.success() {
-                    let words = group::words(status, &self.folder.log(&planned.name));
-                    self.fail(job.run, &words)
-                } else if self.stopping {
-                    Ok(())
-                } else {
-                    self.fail(job.run, "it was ended before its last iteration")
-                }
-            }
-            Task::Judging { draft } => {
-                if status.success() {
-                    return self.judged(job.run, &draft);
-                }
-                // A draft that cannot be removed is overwritten by the next attempt.
-                let _ = std::fs::remove_file(&draft);
-                if self.stopping {
-                    return Ok(());
-                }
-                let words = group::words(status, &self.folder.log(&planned.name));
-                self.fail(job.run, &format!("judging it {words}"))
-            }
-        }
-    }
-
-    /// Keeps what was found of a run.
-    fn judged(&mut self, run: usize, draft: &Path) -> Result<()> {
-        let name = &self.planned[run].name;
-        let made = self.folder.run(name)?;
-        let (Some(made), Some(evaluation)) = (made, &self.file.evaluate) else {
-            return Ok(());
-        };
-        match Judgement::keep(&made, evaluation, draft) {
-            Ok(()) => Ok(()),
-            Err(error) => self.fail(run, &format!("{error:#}")),
-        }
-    }
-
-    /// A run whose training is done: judged, if that is asked for and was not done before in the same way.
-    fn finished(&mut self, run: usize) -> Result<()> {
-        let name = self.planned[run].name.clone();
-        self.progress[run].done = self.progress[run].of;
-        self.folder.note(&name, None)?;
-        let Some(folder) = self.folder.run(&name)? else {
-            return Ok(());
-        };
-        let Some(evaluation) = &self.file.evaluate else {
-            return Ok(());
-        };
-        // One that cannot be read is found anew like one that was found otherwise.
-        let known = Judgement::read(&folder).ok().flatten();
-        let known = known.and_then(|known| known.rows(&folder, Some(evaluation)));
-        if known.is_some() || self.stopping {
-            return Ok(());
-        }
-        let draft = Judgement::path(&folder).with_extension("draft");
-        match group::evaluate(&folder, evaluation, &draft, self.folder) {
-            Ok(child) => {
-                let task = Task::Judging { draft };
-                self.jobs.push(Job { run, child, task });
-                Ok(())
-            }
-            Err(error) => self.fail(run, &format!("{error:#}")),
-        }
-    }
-
-    /// Says and notes that a run failed; the others go on.
-    fn fail(&mut self, run: usize, words: &str) -> Result<()> {
-        let name = &self.planned[run].name;
-        self.console
-            .say(&format!("{name} failed and the others go on: {words}"));
-        self.failures.push(name.clone());
-        self.folder.note(name, Some(words))
     }
 }
 

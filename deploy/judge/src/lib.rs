@@ -5,8 +5,10 @@
 
 #![forbid(unsafe_code)]
 
+mod command;
 mod episodes;
 mod judge;
+mod outcome;
 mod pictures;
 mod progress;
 mod reference;
@@ -19,7 +21,6 @@ mod table;
 mod tally;
 
 use std::path::PathBuf;
-use std::str::FromStr;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
@@ -30,6 +31,7 @@ use terminal::console::{self, Console};
 use terminal::failure::usage;
 use terminal::{Engine, Place};
 
+pub use command::Command;
 use episodes::{Conditions, Unit, Walker};
 pub use judge::Judge;
 use progress::Progress;
@@ -114,26 +116,7 @@ enum Suite {
     Standard,
 }
 
-/// vx, vy (m/s, heading frame) and yaw rate (rad/s).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Command(pub [f32; 3]);
-
 const DEFAULT_COMMANDS: [Command; 2] = [Command([0.5, 0.0, 0.0]), Command([1.0, 0.0, 0.0])];
-
-impl FromStr for Command {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Result<Vec<f32>, _> =
-            text.split(',').map(|part| part.trim().parse()).collect();
-        match numbers.as_deref() {
-            Ok(&[forward, left, yaw]) if [forward, left, yaw].iter().all(|x| x.is_finite()) => {
-                Ok(Self([forward, left, yaw]))
-            }
-            _ => Err("expected three numbers, as in 0.8,0,0".to_owned()),
-        }
-    }
-}
 
 impl Evaluate {
     /// Walks, and prints and writes how well.
@@ -274,18 +257,5 @@ impl Evaluate {
         }
         text.push('\n');
         console::print(&text)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_command_is_three_finite_numbers() {
-        assert_eq!("0.8, 0,-0.5".parse(), Ok(Command([0.8, 0.0, -0.5])));
-        for text in ["", "0.8", "0.8,0", "0.8,0,0,0", "a,b,c", "inf,0,0"] {
-            assert!(text.parse::<Command>().is_err(), "{text:?}");
-        }
     }
 }

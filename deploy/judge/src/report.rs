@@ -11,11 +11,12 @@ use sim::Physics;
 use wording::count;
 
 use super::episodes::Conditions;
+use super::outcome::Outcome;
 use super::reference::Nearest;
 use super::scenario::Scenario;
 use super::subject::{Kept, Subject};
 use super::table;
-use super::tally::{CONTROL_HZ, Outcome, Tally};
+use super::tally::{CONTROL_HZ, Tally};
 
 /// All of it.
 #[derive(Debug, Serialize)]

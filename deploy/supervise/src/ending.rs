@@ -9,8 +9,10 @@ use terminal::figures::clock;
 use tokio::time::{interval, sleep};
 use wording::count;
 
+use super::group::Group;
+use super::roles::{self, LEARNER, is_actor};
 use super::stop::Stop;
-use super::{Group, LEARNER, LOOK, Reason, is_actor};
+use super::{LOOK, Reason};
 use crate::programs;
 
 /// Actors that the learner has told to save and stop get this long before they are told again.
@@ -57,7 +59,7 @@ impl Group<'_> {
         match reason {
             Reason::Failed(error) => Err(error),
             Reason::GivenUp(role, status) => {
-                let log = super::log(self.launch.folder, &role);
+                let log = roles::log(self.launch.folder, &role);
                 let before = self.logged.get(&role).copied().unwrap_or(0);
                 let said = self.said.get(&role).map(String::as_str);
                 let account = programs::account(status, said, &log, before);
