@@ -10,7 +10,7 @@ use iceoryx2::prelude::ZeroCopySend;
 use crate::error::PortError;
 use crate::port::{Publisher, Subscriber, Wake};
 use crate::presence::Node;
-use crate::stream::Directives;
+use crate::stream::{self, Spec, Stream};
 
 /// How long an answer is still waited for once this process was asked to stop.
 const LAST_WORD: Duration = Duration::from_secs(1);
@@ -91,6 +91,16 @@ impl Directive {
 
 fn number(value: f64) -> Option<f64> {
     (!value.is_nan()).then_some(value)
+}
+
+/// The stream of directives.
+#[derive(Debug)]
+pub(crate) enum Directives {}
+
+impl Stream for Directives {
+    type Item = Directive;
+    type Header = ();
+    const SPEC: Spec = stream::DIRECTIVES;
 }
 
 /// The scheduler's end. There is one per run.

@@ -14,7 +14,8 @@ use std::path::{Path, PathBuf};
 use iceoryx2::node::NodeView;
 use iceoryx2::prelude::{CallbackProgression, Config, FilePath, NodeState, SemanticString};
 
-use crate::port::Service;
+/// The flavour of iceoryx2: between processes, ports may be held by several threads.
+pub(crate) type Service = iceoryx2::prelude::ipc_threadsafe::Service;
 
 /// Version of everything that crosses a process boundary: headers, layouts, limits of the streams.
 pub const PROTOCOL_VERSION: u32 = 4;

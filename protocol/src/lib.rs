@@ -57,9 +57,9 @@ pub use weights::{
 /// Bytes of shared memory that a run reserves: every actor's rollouts, the weights, and the small
 /// segments of reports, directives and connections.
 pub fn reserved_bytes(actors: usize, layout: RolloutLayout, weights: usize) -> u64 {
-    let rollouts = port::reserved_bytes::<stream::Rollouts>(layout.len());
-    let small = port::reserved_bytes::<stream::Rewards>(1)
-        + port::reserved_bytes::<stream::Directives>(1)
+    let rollouts = port::reserved_bytes::<rollout::Rollouts>(layout.len());
+    let small = port::reserved_bytes::<reward::Rewards>(1)
+        + port::reserved_bytes::<directive::Directives>(1)
         + room::MARGIN;
-    actors as u64 * rollouts + port::reserved_bytes::<stream::Weights>(weights) + small
+    actors as u64 * rollouts + port::reserved_bytes::<weights::WeightsStream>(weights) + small
 }

@@ -16,14 +16,12 @@ use iceoryx2::prelude::{AllocationStrategy, BackpressureStrategy};
 use iceoryx2::sample::Sample;
 use iceoryx2::sample_mut::SampleMut;
 
+use crate::domain::Service;
 use crate::error::PortError;
 use crate::presence::{Node, TICK, Tend};
 use crate::room;
 use crate::service::{self, TAKEOVER};
 use crate::stream::Stream;
-
-/// The flavour of iceoryx2: between processes, ports may be held by several threads.
-pub(crate) type Service = iceoryx2::prelude::ipc_threadsafe::Service;
 
 /// Why waiting ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -15,9 +15,8 @@ use iceoryx2::prelude::{
     LogLevel, NodeBuilder, NodeName, SignalHandlingMode, set_log_level_from_env_or,
 };
 
-use crate::domain::{self, Domain};
+use crate::domain::{self, Domain, Service};
 use crate::error::PortError;
-use crate::port::Service;
 use crate::room;
 use crate::shutdown::Shutdown;
 use crate::watch::Watch;

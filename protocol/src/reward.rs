@@ -12,7 +12,7 @@ use vocabulary::number;
 use crate::error::PortError;
 use crate::port::{Publisher, Subscriber, Wake};
 use crate::presence::Node;
-use crate::stream::Rewards;
+use crate::stream::{self, Spec, Stream};
 
 /// Rewards of one iteration's batch, before blending.
 ///
@@ -48,6 +48,16 @@ pub struct RewardReport {
     /// Mean length of the episodes that ended, as a share of the longest possible; NaN where none ended.
     #[serde(default = "number::unknown", deserialize_with = "number::or_nan")]
     pub episode_share: f64,
+}
+
+/// The stream of reports.
+#[derive(Debug)]
+pub(crate) enum Rewards {}
+
+impl Stream for Rewards {
+    type Item = RewardReport;
+    type Header = ();
+    const SPEC: Spec = stream::REWARDS;
 }
 
 /// The learner's end. There is one per run.

@@ -19,7 +19,7 @@ pub use terms::{MAX_TERMS, TermMean};
 use crate::error::PortError;
 use crate::port::{Loan, Publisher, Received, SendOutcome, Subscriber, Wake};
 use crate::presence::Node;
-use crate::stream::{Rollouts, Stream};
+use crate::stream::{self, Spec, Stream};
 
 /// Who collected a rollout, under which policy, and how long it took.
 ///
@@ -81,6 +81,16 @@ impl RolloutHeader {
             }),
         }
     }
+}
+
+/// The stream of rollouts.
+#[derive(Debug)]
+pub(crate) enum Rollouts {}
+
+impl Stream for Rollouts {
+    type Item = f32;
+    type Header = RolloutHeader;
+    const SPEC: Spec = stream::ROLLOUTS;
 }
 
 /// An actor's end.

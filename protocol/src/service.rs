@@ -1,6 +1,6 @@
 //! Opening a stream's services: one version, one set of limits, a place in it.
 //!
-//! Separate from [`crate::port`] because this is where processes that start, die and come back at
+//! Separate from the ports because this is where processes that start, die and come back at
 //! the same moment meet; all the patience that this needs is here.
 
 use std::fmt::Debug;
@@ -10,8 +10,8 @@ use iceoryx2::prelude::{AttributeVerifier, EventId, MessagingPattern, ServiceNam
 use iceoryx2::service::Service as _;
 use iceoryx2::service::port_factory::{event, publish_subscribe};
 
+use crate::domain::Service;
 use crate::error::PortError;
-use crate::port::Service;
 use crate::presence::Membership;
 use crate::stream::{MAX_NODES, Spec, Stream};
 

@@ -1,4 +1,4 @@
-//! The table of streams: name, payload, depth, overflow.
+//! The table of streams: name, depth, overflow. What each carries is said where the message is.
 //!
 //! Separate because the first process that opens a stream fixes its limits for all others; every
 //! process must therefore read them here. A change of this table is a new
@@ -7,11 +7,6 @@
 use std::fmt::Debug;
 
 use iceoryx2::prelude::ZeroCopySend;
-
-use crate::directive::Directive;
-use crate::reward::RewardReport;
-use crate::rollout::RolloutHeader;
-use crate::weights::WeightsHeader;
 
 /// Most actors of one run.
 pub const MAX_ACTORS: usize = 64;
@@ -57,7 +52,7 @@ impl Spec {
     }
 }
 
-/// What a stream carries and its limits.
+/// What a stream carries, and its row in the table.
 pub(crate) trait Stream: Debug + 'static {
     /// Item of the payload, which is a slice.
     type Item: ZeroCopySend + Copy + Debug + Send + Sync + 'static;
@@ -70,89 +65,61 @@ pub(crate) trait Stream: Debug + 'static {
 /// Actors → learner. Nothing may be lost silently: a full buffer holds the actor up.
 ///
 /// One reader, so a second learner of the same run is refused.
-#[derive(Debug)]
-pub(crate) enum Rollouts {}
-
-impl Stream for Rollouts {
-    type Item = f32;
-    type Header = RolloutHeader;
-    const SPEC: Spec = Spec {
-        name: "rollouts",
-        publishers: MAX_ACTORS + RESTARTING,
-        subscribers: 1,
-        buffer: 2,
-        borrowed: 2,
-        loaned: 2,
-        history: 0,
-        overflow: false,
-        reserve: None,
-    };
-}
+pub(crate) const ROLLOUTS: Spec = Spec {
+    name: "rollouts",
+    publishers: MAX_ACTORS + RESTARTING,
+    subscribers: 1,
+    buffer: 2,
+    borrowed: 2,
+    loaned: 2,
+    history: 0,
+    overflow: false,
+    reserve: None,
+};
 
 /// Learner → actors. Only the newest counts, and a late actor still gets it.
 ///
 /// All readers share the newest message, so far fewer exist than the worst case of 354: the newest,
 /// the one being written, and a few held by readers that are copying an older one.
-#[derive(Debug)]
-pub(crate) enum Weights {}
-
-impl Stream for Weights {
-    type Item = f32;
-    type Header = WeightsHeader;
-    const SPEC: Spec = Spec {
-        name: "weights",
-        publishers: 1,
-        subscribers: MAX_ACTORS + RESTARTING + MONITORS,
-        buffer: 1,
-        // One in use, one found newer, one found newer still.
-        borrowed: 3,
-        loaned: 1,
-        history: 1,
-        overflow: true,
-        reserve: Some(16),
-    };
-}
+pub(crate) const WEIGHTS: Spec = Spec {
+    name: "weights",
+    publishers: 1,
+    subscribers: MAX_ACTORS + RESTARTING + MONITORS,
+    buffer: 1,
+    // One in use, one found newer, one found newer still.
+    borrowed: 3,
+    loaned: 1,
+    history: 1,
+    overflow: true,
+    reserve: Some(16),
+};
 
 /// Learner → scheduler. Every report counts; gaps show in the sequence number.
-#[derive(Debug)]
-pub(crate) enum Rewards {}
-
-impl Stream for Rewards {
-    type Item = RewardReport;
-    type Header = ();
-    const SPEC: Spec = Spec {
-        name: "rewards",
-        publishers: 1,
-        subscribers: MONITORS,
-        buffer: 64,
-        borrowed: 1,
-        loaned: 1,
-        history: 0,
-        overflow: true,
-        reserve: None,
-    };
-}
+pub(crate) const REWARDS: Spec = Spec {
+    name: "rewards",
+    publishers: 1,
+    subscribers: MONITORS,
+    buffer: 64,
+    borrowed: 1,
+    loaned: 1,
+    history: 0,
+    overflow: true,
+    reserve: None,
+};
 
 /// Scheduler → learner. As weights: the newest wins and is kept for late readers.
-#[derive(Debug)]
-pub(crate) enum Directives {}
-
-impl Stream for Directives {
-    type Item = Directive;
-    type Header = ();
-    const SPEC: Spec = Spec {
-        name: "directives",
-        publishers: 1,
-        subscribers: MONITORS,
-        buffer: 1,
-        // One found, one found newer.
-        borrowed: 2,
-        loaned: 1,
-        history: 1,
-        overflow: true,
-        reserve: None,
-    };
-}
+pub(crate) const DIRECTIVES: Spec = Spec {
+    name: "directives",
+    publishers: 1,
+    subscribers: MONITORS,
+    buffer: 1,
+    // One found, one found newer.
+    borrowed: 2,
+    loaned: 1,
+    history: 1,
+    overflow: true,
+    reserve: None,
+};
 
 #[cfg(test)]
 mod tests {
@@ -160,9 +127,9 @@ mod tests {
 
     #[test]
     fn memory_is_reserved_for_the_worst_case_except_for_weights() {
-        assert_eq!(Rollouts::SPEC.messages(), 6); // 1·(2 + 2) + 0 + 2
-        assert_eq!(Rewards::SPEC.messages(), 521); // 8·(64 + 1) + 0 + 1
-        assert_eq!(Directives::SPEC.messages(), 26); // 8·(1 + 2) + 1 + 1
-        assert_eq!(Weights::SPEC.messages(), 16); // instead of 88·(1 + 3) + 1 + 1
+        assert_eq!(ROLLOUTS.messages(), 6); // 1·(2 + 2) + 0 + 2
+        assert_eq!(REWARDS.messages(), 521); // 8·(64 + 1) + 0 + 1
+        assert_eq!(DIRECTIVES.messages(), 26); // 8·(1 + 2) + 1 + 1
+        assert_eq!(WEIGHTS.messages(), 16); // instead of 88·(1 + 3) + 1 + 1
     }
 }

@@ -13,7 +13,7 @@ use crate::error::PortError;
 use crate::port::{Publisher, Received, Subscriber, Wake};
 use crate::presence::Node;
 use crate::rollout::RolloutLayout;
-use crate::stream::{self, Stream};
+use crate::stream::{self, Spec, Stream};
 
 /// Most hidden layers that a header can describe.
 pub const MAX_HIDDEN_LAYERS: usize = 6;
@@ -132,10 +132,20 @@ impl WeightsHeader {
     }
 }
 
+/// The stream of weights.
+#[derive(Debug)]
+pub(crate) enum WeightsStream {}
+
+impl Stream for WeightsStream {
+    type Item = f32;
+    type Header = WeightsHeader;
+    const SPEC: Spec = stream::WEIGHTS;
+}
+
 /// The learner's end. There is one per run.
 #[derive(Debug)]
 pub struct WeightsPublisher {
-    port: Publisher<stream::Weights>,
+    port: Publisher<WeightsStream>,
     len: usize,
     learner: u64,
 }
@@ -157,7 +167,7 @@ impl WeightsPublisher {
     pub fn broadcast(&self, header: WeightsHeader, flat: &[f32]) -> Result<(), PortError> {
         if flat.len() != self.len {
             return Err(PortError::Length {
-                stream: stream::Weights::SPEC.name,
+                stream: WeightsStream::SPEC.name,
                 expected: self.len,
                 got: flat.len(),
             });
@@ -177,7 +187,7 @@ impl WeightsPublisher {
 /// An actor's end, or a monitor's.
 #[derive(Debug)]
 pub struct WeightsSubscriber {
-    port: Subscriber<stream::Weights>,
+    port: Subscriber<WeightsStream>,
 }
 
 impl WeightsSubscriber {
@@ -201,7 +211,7 @@ impl WeightsSubscriber {
 
 /// Weights being read in shared memory.
 pub struct Weights {
-    sample: Received<stream::Weights>,
+    sample: Received<WeightsStream>,
 }
 
 impl fmt::Debug for Weights {

@@ -5,7 +5,7 @@
 //! their torque to themselves. Instead each joint's passive spring is set every physics step so that
 //! it pulls with the torque we want; damping is rapier's implicit one, which is stable at any gain.
 
-use crate::world::{BASE_DEGREES, HINGE_AXIS};
+use crate::model::{BASE_DEGREES, HINGE_AXIS};
 use g1::{ACTION_SCALE, DEFAULT_POSE, JOINT_TABLE, JOINTS};
 use rapier3d::dynamics::{JointAxesMask, JointLimits, Multibody};
 

@@ -4,7 +4,7 @@
 //! and every few seconds after, by one sampler.
 
 use crate::kind::{Kind, KindsConfig};
-use crate::world::CONTROL_STEP;
+use crate::time::CONTROL_STEP;
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, Ramp, invalid};
@@ -13,8 +13,8 @@ use vocabulary::{Checked, Ramp, invalid};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct CommandConfig {
-    /// Forward velocity, m/s: least and greatest. Default 0.4 to 1.2, where the recipe began that
-    /// walked; the paper gives no ranges. Ranges that contain 0 from the start taught hopping.
+    /// Forward velocity, m/s: least and greatest. Default 0.4 to 1.2; the paper gives no ranges. With a range that
+    /// contains 0 from the start, robots learn to hop.
     pub forward: Ramp<[f32; 2]>,
     /// Leftward velocity, m/s. Default 0: the reference motion walks straight.
     pub lateral: Ramp<[f32; 2]>,
@@ -94,18 +94,45 @@ impl CommandConfig {
         self.matched_share.check("matched_share", invalid::share)?;
         self.kinds
             .as_ref()
-            .map_or(Ok(()), |kinds| kinds.validate(self))
+            .map_or(Ok(()), |kinds| kinds.validate(self.forward.now()))
     }
 
     /// A command: the one sampler, for resets and for changes inside an episode.
     pub fn draw(&self, occasion: Occasion, rng: &mut impl Rng) -> [f32; 3] {
         let drawn = match occasion.kind {
-            Some(kind) => kind.draw(self, rng),
+            Some(kind) => self.draw_of(kind, rng),
             None => self.draw_any(rng),
         };
         match occasion.motion {
             Some(motion) if rng.random::<f32>() < self.matched_share.now() => motion,
             _ => drawn,
+        }
+    }
+
+    /// A command of one kind from the self.
+    fn draw_of(&self, kind: Kind, rng: &mut impl Rng) -> [f32; 3] {
+        let ([slowest, fastest], lateral) = (self.forward.now(), self.lateral.now());
+        let yaw_rates = self.yaw_rate.now();
+        let forward = match kind {
+            Kind::Forward => [slowest.max(0.0), fastest],
+            Kind::Backward => [slowest, fastest.min(0.0)],
+            _ => [slowest, fastest],
+        };
+        // A range that moves may be one that leaves nothing of this kind yet: then its near end.
+        let forward = [forward[0].min(fastest), forward[1].max(slowest)];
+        let [vx, vy, yaw_rate] = [forward, lateral, yaw_rates]
+            .map(|[least, greatest]| rng.random_range(least..=greatest));
+        let ahead = self
+            .kinds
+            .as_ref()
+            .map_or(0.0, |kinds| kinds.approach.now());
+        match kind {
+            Kind::Standing => [0.0; 3],
+            Kind::Forward => [vx, 0.0, 0.0],
+            Kind::Backward => [self.away(vx, forward), 0.0, 0.0],
+            Kind::Lateral => [ahead, self.away(vy, lateral), 0.0],
+            Kind::Turning => [ahead, 0.0, self.away(yaw_rate, yaw_rates)],
+            Kind::Mixed => [vx, vy, yaw_rate],
         }
     }
 

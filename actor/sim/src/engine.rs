@@ -3,7 +3,7 @@
 //! Separate from the world because one engine serves all robots of a thread: it holds nothing that
 //! the next step of any robot depends on.
 
-use crate::world::PHYSICS_STEP;
+use crate::time::PHYSICS_STEP;
 use rapier3d::dynamics::{CCDSolver, IntegrationParameters};
 use rapier3d::pipeline::PhysicsPipeline;
 

@@ -7,11 +7,10 @@
 use crate::actuator;
 use crate::command::Occasion;
 use crate::feet::Footing;
-use crate::kind::Pools;
 use crate::moment::{self, Moment};
 use crate::physics::Bodies;
 use crate::randomization::Table;
-use crate::start::{self, Starts};
+use crate::start::{self, Pools, Starts};
 use crate::task::TaskConfig;
 use crate::termination::stray::Astray;
 use crate::terms::Sums;

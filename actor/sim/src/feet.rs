@@ -1,6 +1,6 @@
 //! Which feet stand, and since when: a measure with a memory, which pays for nothing itself.
 
-use crate::world::CONTROL_STEP;
+use crate::time::CONTROL_STEP;
 use g1::gait::CONTACT_FORCE;
 use g1::links::{LEFT_FOOT, RIGHT_FOOT};
 use g1::{RobotState, kinematics};

@@ -11,9 +11,9 @@ pub use out::StepOut;
 use crate::actuator::Gains;
 use crate::env::{Environment, Setting};
 use crate::error::SimError;
-use crate::kind::Pools;
 use crate::physics::{Bodies, Exertion};
 use crate::randomization::{RandomizationConfig, Table};
+use crate::start::Pools;
 use crate::start::Starts;
 use crate::task::TaskConfig;
 use crate::terms::Sums;
@@ -212,7 +212,7 @@ impl Fleet {
     /// Mean of every reward term and gate over all robots' steps since this was last asked, by their names in metrics;
     /// those that do not exist are not among them. Steps that broke do not count.
     pub fn take_terms(&mut self) -> Vec<(&'static str, f32)> {
-        self.sums.take()
+        self.sums.take(&crate::task::NAMES)
     }
 
     /// Steps thrown away so far because an action or a state was not finite.

@@ -5,9 +5,6 @@
 //! kinds of command, drawn as often, the one that is learnt already gets five times the samples of
 //! the other, and the other is not learnt. A robot that keeps to one kind spends all its steps on it.
 
-use crate::command::CommandConfig;
-use crate::start::Starts;
-use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, Ramp, invalid};
 
@@ -29,7 +26,7 @@ pub enum Kind {
 }
 
 /// All kinds, in the order of [`KindsConfig`].
-const KINDS: [Kind; 6] = [
+pub(crate) const KINDS: [Kind; 6] = [
     Kind::Standing,
     Kind::Forward,
     Kind::Backward,
@@ -48,33 +45,6 @@ impl Kind {
             [false, true, false] => Self::Lateral,
             [false, false, true] => Self::Turning,
             _ => Self::Mixed,
-        }
-    }
-
-    /// A command of this kind from the ranges.
-    pub(crate) fn draw(self, ranges: &CommandConfig, rng: &mut impl Rng) -> [f32; 3] {
-        let ([slowest, fastest], lateral) = (ranges.forward.now(), ranges.lateral.now());
-        let yaw_rates = ranges.yaw_rate.now();
-        let forward = match self {
-            Self::Forward => [slowest.max(0.0), fastest],
-            Self::Backward => [slowest, fastest.min(0.0)],
-            _ => [slowest, fastest],
-        };
-        // A range that moves may be one that leaves nothing of this kind yet: then its near end.
-        let forward = [forward[0].min(fastest), forward[1].max(slowest)];
-        let [vx, vy, yaw_rate] = [forward, lateral, yaw_rates]
-            .map(|[least, greatest]| rng.random_range(least..=greatest));
-        let ahead = ranges
-            .kinds
-            .as_ref()
-            .map_or(0.0, |kinds| kinds.approach.now());
-        match self {
-            Self::Standing => [0.0; 3],
-            Self::Forward => [vx, 0.0, 0.0],
-            Self::Backward => [ranges.away(vx, forward), 0.0, 0.0],
-            Self::Lateral => [ahead, ranges.away(vy, lateral), 0.0],
-            Self::Turning => [ahead, 0.0, ranges.away(yaw_rate, yaw_rates)],
-            Self::Mixed => [vx, vy, yaw_rate],
         }
     }
 }
@@ -108,8 +78,9 @@ impl KindsConfig {
         self.approach.set(samples);
     }
 
-    /// Checks every field against the ranges of commands; names the first bad one and a remedy.
-    pub(crate) fn validate(&self, ranges: &CommandConfig) -> Checked {
+    /// Checks every field, those that go ahead or back against the range of forward velocities, m/s; names the first
+    /// bad one and a remedy.
+    pub(crate) fn validate(&self, [slowest, fastest]: [f32; 2]) -> Checked {
         let fields = [
             "kinds.standing",
             "kinds.forward",
@@ -135,7 +106,6 @@ impl KindsConfig {
             self.weights(),
             "give at least one kind a share, or leave the table out",
         )?;
-        let [slowest, fastest] = ranges.forward.now();
         invalid::require(
             self.forward == 0.0 || fastest > 0.0,
             "kinds.forward",
@@ -171,37 +141,6 @@ impl KindsConfig {
             at < sum
         });
         found.map_or(Kind::Mixed, |(kind, _)| kind)
-    }
-}
-
-/// Frames of reference motion by the kind of their command.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Pools {
-    /// Of each kind: the frame, and the running sum of the kind's weights.
-    frames: [Vec<(usize, f32)>; KINDS.len()],
-}
-
-impl Pools {
-    /// Sorted once, for draws without a search through all frames.
-    pub(crate) fn of(starts: &Starts) -> Self {
-        let mut pools = Self::default();
-        let mut before = 0.0;
-        for (frame, &sum) in starts.cumulative_weights.iter().enumerate() {
-            let pool = &mut pools.frames[Kind::of(starts.commands[frame]) as usize];
-            let within = pool.last().map_or(0.0, |&(_, sum)| sum);
-            pool.push((frame, within + sum - before));
-            before = sum;
-        }
-        pools
-    }
-
-    /// A frame of a kind by weight; none if no motion is of that kind.
-    pub(crate) fn draw(&self, kind: Kind, rng: &mut impl Rng) -> Option<usize> {
-        let pool = &self.frames[kind as usize];
-        let &(_, total) = pool.last()?;
-        let at = rng.random::<f32>() * total;
-        let place = pool.partition_point(|&(_, sum)| sum <= at);
-        Some(pool[place.min(pool.len() - 1)].0)
     }
 }
 

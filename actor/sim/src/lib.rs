@@ -24,6 +24,7 @@
 //! | the two engines behind one seam | [`physics`] |
 //! | a robot in rapier, state in and out | [`world`], [`model`] |
 //! | rapier's settings | [`engine`] |
+//! | lengths of a physics and a control step | [`time`] |
 //!
 //! A value of the task that moves with the samples is a [`vocabulary::Ramp`].
 #![forbid(unsafe_code)]
@@ -47,6 +48,7 @@ pub mod start;
 pub mod task;
 pub mod termination;
 mod terms;
+pub mod time;
 pub mod world;
 
 pub use actuator::Gains;

@@ -9,6 +9,12 @@ use rapier3d::dynamics::{GenericJoint, GenericJointBuilder, JointAxesMask, MassP
 use rapier3d::math::{Pose, Rotation, Vector};
 use serde::{Deserialize, Serialize};
 
+/// Degrees of freedom of the free base, ahead of the joints in generalised vectors: linear velocity
+/// of the pelvis' centre of mass, then angular velocity, both in the world frame.
+pub(crate) const BASE_DEGREES: usize = 6;
+/// Index of the free angular axis of a hinge among rapier's six.
+pub(crate) const HINGE_AXIS: usize = 3;
+
 /// What is different about one robot and its floor: the rows of Table I that change the physics.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Variation {
@@ -92,7 +98,7 @@ pub(crate) fn hinge(joint: &Joint) -> GenericJoint {
 
 /// Reflected rotor inertia of every degree of freedom: none for the base, then the joints'.
 pub(crate) fn armature(degree: usize) -> f32 {
-    match degree.checked_sub(crate::world::BASE_DEGREES) {
+    match degree.checked_sub(BASE_DEGREES) {
         Some(joint) => JOINT_TABLE[joint].armature as f32,
         None => 0.0,
     }

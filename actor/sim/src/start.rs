@@ -4,11 +4,15 @@
 //! training lie near where episodes begin.
 
 use crate::command::{CommandConfig, Occasion};
-use crate::kind::{Kind, Pools};
+use crate::kind::Kind;
 use g1::{JOINT_TABLE, RobotState, kinematics};
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, Ramp, invalid};
+
+mod pools;
+
+pub(crate) use pools::Pools;
 
 /// How starts are drawn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

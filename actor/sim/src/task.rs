@@ -4,16 +4,33 @@
 //! are the paper's: Eq. 14, and an end by a fall or after 20 s.
 
 use crate::command::CommandConfig;
-use crate::gate::GateConfig;
+use crate::gate::{self, GateConfig};
 use crate::moment::Moment;
 use crate::physics::Physics;
-use crate::reward::RewardConfig;
+use crate::reward::{self, RewardConfig};
 use crate::start::StartConfig;
 use crate::termination::TerminationConfig;
-use crate::terms::Sums;
+use crate::terms::{self, Sums};
 use serde::{Deserialize, Serialize};
 use vocabulary::Checked;
 use vocabulary::invalid::within;
+
+/// Names of the terms in metrics: rewards, then gates, as [`Sums`] has them.
+pub(crate) const NAMES: [&str; reward::NAMES.len() + gate::NAMES.len()] = {
+    let mut names = [""; reward::NAMES.len() + gate::NAMES.len()];
+    let mut place = 0;
+    while place < names.len() {
+        names[place] = if place < reward::NAMES.len() {
+            reward::NAMES[place]
+        } else {
+            gate::NAMES[place - reward::NAMES.len()]
+        };
+        place += 1;
+    }
+    names
+};
+
+const _: () = assert!(NAMES.len() <= terms::MOST, "a message holds no more terms");
 
 /// The `[task]` section. Where a [`vocabulary::Ramp`] stands, a value may move with the samples that the learner has
 /// used.

@@ -27,26 +27,14 @@ pub(crate) trait Term {
     fn validate(&self) -> Checked;
 }
 
-/// Terms that are told: of rewards and gates together, by their names in metrics.
-pub(crate) const NAMES: [&str; crate::reward::NAMES.len() + crate::gate::NAMES.len()] = {
-    let mut names = [""; crate::reward::NAMES.len() + crate::gate::NAMES.len()];
-    let mut place = 0;
-    while place < names.len() {
-        names[place] = if place < crate::reward::NAMES.len() {
-            crate::reward::NAMES[place]
-        } else {
-            crate::gate::NAMES[place - crate::reward::NAMES.len()]
-        };
-        place += 1;
-    }
-    names
-};
+/// Most terms of all tables together: as many as the message of a rollout tells.
+pub(crate) const MOST: usize = 16;
 
 /// Sums of what the terms came to over the steps since they were last asked for.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sums {
-    /// Steps and sum of every term in the order of [`NAMES`].
-    of: [(u32, f64); NAMES.len()],
+    /// Steps and sum of every term, in the order of the tables.
+    of: [(u32, f64); MOST],
 }
 
 impl Sums {
@@ -57,14 +45,11 @@ impl Sums {
         *sum += f64::from(value);
     }
 
-    /// The mean of every term that was looked at, and begins anew.
-    pub(crate) fn take(&mut self) -> Vec<(&'static str, f32)> {
+    /// The mean of every term that was looked at, by the names of all of them, and begins anew.
+    pub(crate) fn take(&mut self, names: &[&'static str]) -> Vec<(&'static str, f32)> {
         let sums = std::mem::take(self).of;
-        let told = NAMES
-            .into_iter()
-            .zip(sums)
-            .filter(|(_, (steps, _))| *steps > 0);
-        told.map(|(name, (steps, sum))| (name, (sum / f64::from(steps)) as f32))
+        let told = names.iter().zip(sums).filter(|(_, (steps, _))| *steps > 0);
+        told.map(|(name, (steps, sum))| (*name, (sum / f64::from(steps)) as f32))
             .collect()
     }
 }
@@ -119,7 +104,7 @@ macro_rules! table {
                 $( if let Some(term) = &mut self.$name { crate::terms::Term::set(term, samples); } )*
             }
 
-            /// Calls `take` with place in [`crate::terms::NAMES`], weight and term of each that weighs something.
+            /// Calls `take` with place among the terms of all tables, weight and term of each that weighs something.
             #[inline]
             fn each(&self, mut take: impl FnMut(usize, f32, &dyn crate::terms::Term)) {
                 let mut place = $first;
@@ -148,19 +133,9 @@ mod tests {
         for value in [0.25, 0.75] {
             sums.add(0, value);
         }
-        sums.add(NAMES.len() - 1, 1.0);
-        let last = NAMES[NAMES.len() - 1];
-        assert_eq!(sums.take(), [(NAMES[0], 0.5), (last, 1.0)]);
-        assert_eq!(sums.take(), []);
-    }
-
-    #[test]
-    fn names_are_told_once_each_and_fit_a_message() {
-        for (i, name) in NAMES.iter().enumerate() {
-            assert!(name.starts_with("reward/") || name.starts_with("gate/"));
-            assert!(!NAMES[..i].contains(name), "{name}");
-            assert!(name.len() <= 28, "{name}");
-        }
-        assert!(NAMES.len() <= 16);
+        sums.add(2, 1.0);
+        let names = ["first", "second", "third"];
+        assert_eq!(sums.take(&names), [("first", 0.5), ("third", 1.0)]);
+        assert_eq!(sums.take(&names), []);
     }
 }

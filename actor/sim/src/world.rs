@@ -10,7 +10,8 @@ mod tests;
 
 use crate::actuator::{self, Gains};
 use crate::engine::Engine;
-use crate::model;
+use crate::model::{self, BASE_DEGREES};
+pub use crate::time::{CONTROL_STEP, PHYSICS_STEP, SUBSTEPS};
 use g1::{BODIES, JOINTS, RobotState, links};
 use nalgebra::Vector3;
 use rapier3d::dynamics::{
@@ -21,21 +22,10 @@ use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase
 use rapier3d::math::{Pose, Vector};
 use serde::{Deserialize, Serialize};
 
-/// Length of a physics step, s: 200 Hz (III-A).
-pub const PHYSICS_STEP: f32 = 0.005;
-/// Physics steps in a control step: the policy runs at 50 Hz (III-A).
-pub const SUBSTEPS: usize = 4;
-/// Length of a control step, s.
-pub const CONTROL_STEP: f32 = PHYSICS_STEP * SUBSTEPS as f32;
 /// Gravitational acceleration, m/s².
 pub const GRAVITY: f32 = 9.81;
-/// Degrees of freedom of the free base, ahead of the joints in generalised vectors: linear velocity
-/// of the pelvis' centre of mass, then angular velocity, both in the world frame.
-pub(crate) const BASE_DEGREES: usize = 6;
 
 const DEGREES: usize = BASE_DEGREES + JOINTS;
-/// Index of the free angular axis of a hinge among rapier's six.
-pub(crate) const HINGE_AXIS: usize = 3;
 /// Beyond these speeds (m/s, rad/s) a state is taken for a blown-up one.
 const SPEED_LIMIT: f32 = 1_000.0;
 

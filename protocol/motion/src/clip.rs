@@ -2,7 +2,7 @@
 //!
 //! Separate because built-in and imported motion end here, and all uses begin here.
 
-use crate::gait::Velocity;
+use crate::velocity::Velocity;
 use g1::RobotState;
 use g1::mirror::{mirror_command, mirror_state};
 use nalgebra::{Isometry2, UnitQuaternion, Vector3};

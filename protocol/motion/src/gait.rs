@@ -45,7 +45,6 @@ mod normative;
 mod run;
 mod stride;
 mod transition;
-mod velocity;
 mod walk;
 mod way;
 
@@ -59,7 +58,7 @@ use nalgebra::Vector3;
 use std::ops::RangeInclusive;
 use stride::{Pose, Stride};
 
-pub use velocity::Velocity;
+pub use crate::velocity::Velocity;
 
 /// Forward speeds that can be walked, started to and stopped from, m/s; negative is backward.
 pub const WALKING_SPEEDS: RangeInclusive<f64> = -0.6..=1.8;

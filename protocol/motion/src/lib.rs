@@ -15,6 +15,7 @@ pub mod gait;
 pub mod import;
 pub mod quality;
 pub mod strata;
+mod velocity;
 
 pub use clip::{Clip, FRAME_SECONDS};
 pub use config::{ClipConfig, Gait, MotionConfig, QuaternionOrder};

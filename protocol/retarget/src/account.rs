@@ -8,7 +8,7 @@ use crate::contact;
 use crate::feet::Plan;
 use crate::floor::Floor;
 use crate::limb::{Chain, KNEE, LEGS, MARGIN};
-use crate::recipe::Posture;
+use crate::posture::Posture;
 use crate::report::{Report, Sharpest, bones_off, held};
 use crate::targets::Target;
 use crate::{signal, solver};

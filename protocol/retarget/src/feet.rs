@@ -7,20 +7,10 @@
 
 use crate::capture::Side;
 use crate::contact::{Contact, stances};
+use crate::posture::{Free, Soles};
 use crate::{pelvis, signal, sole};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use std::f64::consts::PI;
-
-/// What directions alone lead to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Free {
-    /// The feet in the world, by [`Side::index`].
-    pub feet: [Isometry3<f64>; 2],
-    /// The hip roll joints in the world, m.
-    pub hips: [Vector3<f64>; 2],
-    /// The ankle pitch joints in the world, m.
-    pub ankles: [Vector3<f64>; 2],
-}
 
 /// Where a foot shall be in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,9 +43,6 @@ pub struct Plan {
     /// Farthest that a foot is kept from its place because the leg does not reach all the same, m.
     pub unreached: f64,
 }
-
-/// A foot's frame on the ground; `None` where it does not stand.
-pub(crate) type Soles = Vec<Option<Isometry3<f64>>>;
 
 /// Height of the sole in the middle of swing, at least, m.
 const CLEARANCE: f64 = 0.015;

@@ -21,6 +21,7 @@ pub mod floor;
 mod limb;
 mod path;
 mod pelvis;
+pub mod posture;
 pub mod recipe;
 pub mod report;
 pub mod signal;
@@ -33,7 +34,8 @@ mod puppet;
 
 pub use capture::{Capture, LANDMARKS, Landmark, Landmarks, Side};
 pub use floor::Floor;
-pub use recipe::{Posture, retarget};
+pub use posture::Posture;
+pub use recipe::retarget;
 pub use report::Report;
 
 /// Frames per second of what comes out: the policy's rate.

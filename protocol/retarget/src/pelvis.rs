@@ -6,8 +6,8 @@
 //! the feet stay where they are planted.
 
 use crate::banded::{self, Row};
-use crate::feet::{Free, Soles};
 use crate::limb::{ANKLE, Chain, HIP, LEGS};
+use crate::posture::{Free, Soles};
 use crate::{signal, sole};
 use nalgebra::{Isometry3, Matrix3, SVector, Vector3};
 

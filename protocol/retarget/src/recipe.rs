@@ -4,8 +4,9 @@
 
 use crate::account::account;
 use crate::capture::{Capture, Side};
-use crate::feet::{Free, Plan};
+use crate::feet::Plan;
 use crate::limb::{ANKLE, ARMS, Chain, HIP, LEGS};
+use crate::posture::{Free, Posture};
 use crate::report::Report;
 use crate::targets::{self, Target};
 use crate::{RATE, contact, feet, path, signal, solver};
@@ -16,15 +17,6 @@ use nalgebra::{Isometry3, SVector};
 
 /// Share of a motor's top speed that is used.
 const SPEED_SHARE: f64 = 0.95;
-
-/// Where the pelvis is and how the joints stand, in one frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Posture {
-    /// Frame of the pelvis in the world, m.
-    pub base: Isometry3<f64>,
-    /// Joint positions, rad.
-    pub joints: [f64; JOINTS],
-}
 
 /// Postures of the robot at [`RATE`] that do what a human did, and the account of it.
 ///

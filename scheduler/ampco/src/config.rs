@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 use vocabulary::Checked;
 use vocabulary::invalid::require;
 
-use crate::Method;
+use crate::weighting::guidance::CeilingKind;
+use crate::{Granularity, Method};
 
 /// Every knob of the schedule. Defaults are Table II and the paper's literal text.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -54,26 +55,6 @@ impl Default for ScheduleConfig {
             bounds_from: BoundsSource::Batch,
         }
     }
-}
-
-/// What R* is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum CeilingKind {
-    /// 1, the largest value that the reward can take.
-    Bound,
-    /// The largest mean reward seen so far.
-    RunningMax,
-}
-
-/// Whose reward a rule is evaluated on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Granularity {
-    /// Each transition's own.
-    Sample,
-    /// The mean over the iteration's batch.
-    Mean,
 }
 
 /// When convergence is tested.

@@ -53,10 +53,11 @@ mod weights;
 pub mod window;
 
 pub use bounds::Bounds;
-pub use config::{ArmKind, BoundsSource, CeilingKind, Granularity, ScheduleConfig};
+pub use config::{ArmKind, BoundsSource, ScheduleConfig};
 pub use decision::{Decision, Phase, Switch, Warning};
 pub use method::{AfterConvergence, Method};
 pub use report::{Report, ReportError};
 pub use schedule::Schedule;
-pub use weighting::{Numbers, Rule, RuleError, Weighting};
+pub use weighting::guidance::CeilingKind;
+pub use weighting::{Granularity, Numbers, Rule, RuleError, Weighting};
 pub use weights::Weights;

@@ -10,6 +10,8 @@ pub mod roger;
 
 pub use numbers::{Numbers, Weighting};
 
+use serde::{Deserialize, Serialize};
+
 use crate::Weights;
 
 /// How the weights of Eq. 1 follow from the rewards.
@@ -37,6 +39,16 @@ pub enum Rule {
         /// μ upper > μ lower.
         upper: f32,
     },
+}
+
+/// Whose reward a rule is evaluated on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Granularity {
+    /// Each transition's own.
+    Sample,
+    /// The mean over the iteration's batch.
+    Mean,
 }
 
 /// Why a rule that came from elsewhere cannot be evaluated.

@@ -1,6 +1,7 @@
 //! What is drawn lies where it was asked for, as often as it was asked for.
 
 use super::*;
+use crate::kind::KINDS;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
@@ -121,4 +122,49 @@ fn bad_values_are_named() {
     });
     assert!(share.contains("matched_share"), "{share}");
     CommandConfig::default().validate().unwrap();
+}
+
+fn ranges() -> CommandConfig {
+    CommandConfig {
+        forward: [-0.5, 1.5].into(),
+        lateral: [-0.4, 0.4].into(),
+        yaw_rate: [-1.0, 1.0].into(),
+        ..CommandConfig::default()
+    }
+}
+
+#[test]
+fn what_a_kind_draws_is_of_that_kind() {
+    let mut rng = Pcg64Mcg::seed_from_u64(1);
+    for kind in KINDS {
+        for _ in 0..200 {
+            let command = ranges().draw_of(kind, &mut rng);
+            assert_eq!(Kind::of(command), kind, "{command:?}");
+            assert!((-0.5..=1.5).contains(&command[0]) && command[1].abs() <= 0.4);
+        }
+    }
+    // Nothing of the kind in the range: as near as it goes, and no panic.
+    let ahead = CommandConfig {
+        forward: [0.4, 1.2].into(),
+        ..ranges()
+    };
+    assert_eq!(ahead.draw_of(Kind::Backward, &mut rng), [0.4, 0.0, 0.0]);
+}
+
+#[test]
+fn stepping_aside_and_turning_are_approached_from_walking_on() {
+    let mut rng = Pcg64Mcg::seed_from_u64(1);
+    let config = CommandConfig {
+        kinds: Some(KindsConfig {
+            approach: 0.4.into(),
+            lateral: 1.0,
+            ..KindsConfig::default()
+        }),
+        ..ranges()
+    };
+    let [ahead, aside, turn] = config.draw_of(Kind::Lateral, &mut rng);
+    assert!(ahead == 0.4 && aside != 0.0 && turn == 0.0);
+    let [ahead, aside, turn] = config.draw_of(Kind::Turning, &mut rng);
+    assert!(ahead == 0.4 && aside == 0.0 && turn != 0.0);
+    assert!(config.draw_of(Kind::Backward, &mut rng)[0] < 0.0);
 }

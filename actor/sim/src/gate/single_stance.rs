@@ -7,7 +7,7 @@ use crate::feet::{Foot, Footing};
 use crate::kind::Kind;
 use crate::moment::Moment;
 use crate::terms::Term;
-use crate::world::CONTROL_STEP;
+use crate::time::CONTROL_STEP;
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, Ramp, invalid};
 
@@ -24,37 +24,34 @@ pub struct SingleStance {
     /// Default 0.4, nearly half of a stride of the reference gait at 1 m/s.
     pub seconds: f32,
     /// Exponent of what a walk is paid, at least 1. Default 1: pay grows with the length of a step. With 2 it grows with
-    /// its square: where robots are pushed about, they took quick small steps however large the share was.
+    /// its square, against the quick small steps of robots that are pushed about.
     #[serde(skip_serializing_if = "is_one")]
     pub power: f32,
-    /// Share of the task reward that is paid for it to who is told anything but straight ahead, instead of `share`.
-    /// Default: `share`. Robots that were paid alike in all directions fell more often aside and on the spot; what else
-    /// changed when they no longer did has not been tried apart.
+    /// Share of the task reward that is paid for it to a robot that is told anything but straight ahead, instead of
+    /// `share`. Default: `share`. Less than it leaves more of the reward for obeying where steps are harder.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aside_share: Option<f32>,
     /// Height of the swinging foot's sole up to which a walk's steps are paid in full, m; from there pay falls to nothing
-    /// at twice it. Default: any height. Long steps were bought by lifting feet 14 cm, at twice the joules.
+    /// at twice it. Default: any height; steps are then long because feet are lifted high, at twice the work.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lift: Option<f32>,
     /// Commanded forward speed up to which long steps are paid, m/s; from there to a run all of the task reward is for
-    /// obeying. Default: at any speed. Who sets off at once to a high speed has no time for long steps.
+    /// obeying. Default: at any speed. A robot that sets off at once to a high speed has no time for long steps.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub walk_to: Option<f32>,
     /// Commanded forward speed from which a run is asked for, m/s: then how long a foot has been in the air
-    /// counts, whether the other stands or not. Default: never. Robots walk at 2 m/s, though the clips there
-    /// run. With this they ran once they were told nothing else, and went on with it while style counted little.
+    /// counts, whether the other stands or not. Default: never; robots then walk at 2 m/s, though the clips there run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub run_from: Option<f32>,
     /// Share of the task reward that is paid for a run, instead of `share`. Default: `share`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub run_share: Option<f32>,
     /// Part of a run's pay that is for flight itself, all of it for 40 ms between one foot's lift-off and the other's
-    /// landing. Default 0: then a walk of long steps earns as much as a run, and beside other commands robots that
-    /// ran flew less and less.
+    /// landing. Default 0: then a walk of long steps earns as much as a run.
     #[serde(skip_serializing_if = "is_nothing")]
     pub flight: f32,
-    /// Share of the task reward that who is told to stand loses while a foot is in the air. Default 0: stepping on the
-    /// spot obeys nearly as well, and robots that walk nearly always stayed at it.
+    /// Share of the task reward that a robot that is told to stand loses while a foot is in the air. Default 0: stepping on
+    /// the spot then obeys nearly as well as standing.
     #[serde(skip_serializing_if = "is_nothing")]
     pub standing: f32,
 }
@@ -96,11 +93,11 @@ impl SingleStance {
     /// Factor of the task reward, 1 − s·(1 − pⁿ) with p = min(t/T, 1) up to t = 2·T and 0 beyond. t is how long the
     /// feet have been as they are, the shorter of the two, if just one of them stands, and 0 otherwise. s may be another
     /// of any way but straight ahead. With `lift` l, pⁿ is times min(max(2 − h/l, 0), 1), h the height of the swinging
-    /// foot (m), which is asked for only then. Without the end at 2·T those told to turn on the spot stood on one leg.
+    /// foot (m), which is asked for only then. Without the end at 2·T robots that are told to turn on the spot stand on one leg.
     ///
     /// Of a run, t is how long the foot that was lifted first is in the air, n is 1, no height counts, f of p is
-    /// min(flight/40 ms, 1) instead, and s may be another. Between `walk_to` and a run the factor is 1. Who is told to
-    /// stand gets 1 with both feet down, else 1 less `standing`.
+    /// min(flight/40 ms, 1) instead, and s may be another. Between `walk_to` and a run the factor is 1. A robot that is
+    /// told to stand gets 1 with both feet down, else 1 less `standing`.
     pub(crate) fn factor(
         &self,
         command: &[f32; 3],

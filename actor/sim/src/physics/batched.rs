@@ -3,7 +3,7 @@
 use super::Exertion;
 use crate::actuator::Gains;
 use crate::model::Variation;
-use crate::world::{PHYSICS_STEP, SUBSTEPS};
+use crate::time::{PHYSICS_STEP, SUBSTEPS};
 use dynamics::{Build, Ground, Motors, Robots, Saved, Solver};
 use g1::{JOINT_TABLE, JOINTS, RobotState};
 use nalgebra::Vector3;

@@ -172,7 +172,7 @@ fn terms_are_told_by_name_and_only_those_that_exist() {
         let command = [speed, 0.0, 0.5];
         task.pay_and_tell(&Moment::new(&command, &walking(), 2.0, &feet), &mut sums);
     }
-    let told = sums.take();
+    let told = sums.take(&NAMES);
     let names: Vec<&str> = told.iter().map(|(name, _)| *name).collect();
     assert_eq!(
         names,
@@ -195,4 +195,13 @@ fn terms_are_told_by_name_and_only_those_that_exist() {
 
 fn read(text: &str) -> TaskConfig {
     toml::from_str(text).unwrap()
+}
+
+#[test]
+fn names_are_told_once_each_and_fit_a_message() {
+    for (i, name) in NAMES.iter().enumerate() {
+        assert!(name.starts_with("reward/") || name.starts_with("gate/"));
+        assert!(!NAMES[..i].contains(name), "{name}");
+        assert!(name.len() <= 28, "{name}");
+    }
 }

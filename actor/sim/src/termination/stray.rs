@@ -5,7 +5,7 @@
 //! whatever it is told, earns nearly as much as one that obeys; and it never falls. An end after a
 //! second or two costs it the rest of the episode, whatever the weights are.
 
-use crate::world::CONTROL_STEP;
+use crate::time::CONTROL_STEP;
 use g1::RobotState;
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, Ramp, invalid};
@@ -32,7 +32,7 @@ pub struct StrayConfig {
     /// Default 0.25.
     pub yaw_rate_weight: f32,
     /// Whether a push of Table I excuses as a new command does: nothing is counted for `grace` after it, and what was
-    /// before is forgotten. Default false. Who is pushed at 0.7 m/s and steps out of it is about as far off for half a
+    /// before is forgotten. Default false. A robot that is pushed at 0.7 m/s and steps out of it is as far off for half a
     /// second; without the excuse an end may follow the right answer.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub excuse_pushes: bool,
@@ -172,7 +172,7 @@ mod tests {
         let braked = (1..).find(|_| astray.step(&rule, &[1.0, 0.0, 0.0], &standing));
         // 5 steps of grace, then 0.99ⁿ < ½: n = 69.
         assert_eq!(braked, Some(74));
-        // Who begins at rest has all of the longer grace: 15 and 69 steps, as above.
+        // A robot that begins at rest has all of the longer grace: 15 and 69 steps, as above.
         assert_eq!(steps(&rule, [1.0, 0.0, 0.0]), 84);
     }
 

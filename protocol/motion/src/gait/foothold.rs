@@ -103,9 +103,9 @@ pub(super) fn standing(side: Side) -> Isometry2<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::velocity::Velocity;
     use super::super::way::{Change, Ramp};
     use super::*;
+    use crate::velocity::Velocity;
 
     const FOOTING: Footing = Footing {
         centre: -0.05,

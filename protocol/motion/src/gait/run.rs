@@ -9,9 +9,9 @@ use super::foothold::Footing;
 use super::g1_fits;
 use super::harmonics::Harmonics;
 use super::stride::{Base, Leg, Stride, human_swing};
-use super::velocity::Velocity;
 use super::walk::{half_width, into_the_curve, sway};
 use super::way::{Change, Way};
+use crate::velocity::Velocity;
 
 /// Share of the stride that a foot is on the ground: below one half, so that both leave it.
 ///

@@ -12,8 +12,8 @@ use super::g1_fits;
 use super::harmonics::Harmonics;
 use super::normative::{self, GRAVITY, LEG};
 use super::stride::{Base, Leg, Stride, human_swing};
-use super::velocity::Velocity;
 use super::way::{Change, Way};
+use crate::velocity::Velocity;
 use g1::links::SOLE_DEPTH;
 use std::f64::consts::TAU;
 

@@ -5,7 +5,7 @@
 //! ask only where the moving frame is. That frame goes with the mean motion: x ahead, y to the left.
 //! Phases are counted in strides, 0 at a contact of the right foot; one can be of any stride.
 
-use super::velocity::Velocity;
+use crate::velocity::Velocity;
 use nalgebra::Isometry2;
 
 /// How the moving frame goes.

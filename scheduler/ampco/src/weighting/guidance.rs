@@ -1,6 +1,6 @@
 //! Adaptive Imitation Guidance, AMPCO's phase I: Eq. 8 and Eq. 9.
 
-use crate::CeilingKind;
+use serde::{Deserialize, Serialize};
 
 /// Largest style reward that Eq. 7 can pay, and largest task reward that Eq. 14 can pay:  max rᴳ = max rˢ = R*   (Eq. 8)
 pub const EXPECTED_MAXIMUM: f32 = 1.0;
@@ -14,6 +14,16 @@ const SMALLEST_CEILING: f64 = 1e-6;
 #[inline]
 pub fn task_weight(style_reward: f32, ceiling: f32) -> f32 {
     (style_reward / ceiling).powi(2).min(1.0)
+}
+
+/// What R* is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CeilingKind {
+    /// 1, the largest value that the reward can take.
+    Bound,
+    /// The largest mean reward seen so far.
+    RunningMax,
 }
 
 /// R*, the "current expected maximum reward value" (Eq. 8), of one reward signal.

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Granularity, Rule, RuleError};
+use super::{Granularity, Rule, RuleError};
 
 /// A rule, and whose rewards it is evaluated on. Written as [`Numbers`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -67,7 +67,7 @@ fn every_end_tells_its_cause() {
 }
 
 fn tells_causes(physics: Physics) {
-    // Told to walk at 1 m/s: who stands is a fifth of it off after one step of a mean over 0.1 s, and 0.05 is allowed.
+    // Told to walk at 1 m/s: a robot that stands is a fifth of it off after one step of a mean over 0.1 s, and 0.05 is allowed.
     let strict = TaskConfig {
         physics,
         command: CommandConfig {

@@ -1,4 +1,4 @@
-//! Table I, and who it leaves alone.
+//! Table I, and the robots that it leaves alone.
 
 use super::*;
 

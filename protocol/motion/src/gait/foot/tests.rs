@@ -1,8 +1,8 @@
 //! The path of a foot: no step, no slip, no scuff.
 
-use super::super::velocity::Velocity;
 use super::super::way::Change;
 use super::*;
+use crate::velocity::Velocity;
 
 /// A stride of 1 m in 1 s.
 const WAY: Way = Way {
