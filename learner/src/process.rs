@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use amp::{Batch, IterationReport, LearningError};
+use amp::{Batch, IterationReport, LearningError, Saturation};
 use anyhow::{Context, Result};
 use protocol::{Shutdown, WeightsOrder};
 use run::{Folder, Lock};
@@ -37,6 +37,7 @@ pub fn run(run_dir: &Path, resume: bool) -> Result<()> {
         started: Instant::now(),
         refusals: 0,
         watch: Watch::default(),
+        saturation: Saturation::default(),
         cores: Cores::default(),
         held,
         folder,
@@ -102,6 +103,7 @@ struct Loop {
     started: Instant,
     refusals: u64,
     watch: Watch,
+    saturation: Saturation,
     cores: Cores,
     held: Lock,
 }
@@ -164,6 +166,7 @@ impl Loop {
                 let fell_after = report.episode_length.filter(|_| mostly_falls);
                 let measures = Measures::of(batch, fell_after);
                 self.watch.take(state.iteration, &measures);
+                self.tell_saturation(report);
                 let idle_share = self.cores.idle_share();
                 let mut record = self.record(lines, state, &measures, guide, report, span);
                 record.timing.idle_share = idle_share;
@@ -181,6 +184,16 @@ impl Loop {
                 });
                 Ok(())
             }
+        }
+    }
+
+    /// Says when the discriminator begins to tell every transition apart, and when it no longer does.
+    fn tell_saturation(&mut self, report: &IterationReport) {
+        let (iteration, scores) = (report.iteration, report.scores());
+        match self.saturation.take(&scores) {
+            Some(true) => warn!(iteration, "{scores}"),
+            Some(false) => info!(iteration, "{scores}"),
+            None => {}
         }
     }
 

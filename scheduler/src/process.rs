@@ -99,7 +99,7 @@ fn tell_switch(decision: &Decision) {
     let (breakout_rate, threshold, trend) =
         (decision.breakout_rate, decision.threshold, decision.trend);
     info!(iteration, ?breakout_rate, threshold, ?trend, ?lower, ?upper, rule = ?decision.rule, "phase two");
-    if let Some(warning) = decision.warning() {
+    for warning in decision.warning().into_iter().chain(decision.idle_bounds()) {
         warn!(iteration, "{warning}");
     }
 }

@@ -101,6 +101,7 @@ fn describe(folder: &Folder, status: &Value) -> Result<String> {
     });
     lines.extend(figures::terms(&status["metrics"]));
     lines.extend(figures::ends(&status["metrics"]));
+    lines.extend(figures::saturation(&status["metrics"]));
     let timing = Figures::read(&status["metrics"]).and_then(|figures| figures.timing.split());
     lines.extend(timing.map(|split| format!("time: {split}")));
     let processes = status["processes"].as_object().into_iter().flatten();
@@ -137,7 +138,8 @@ mod tests {
 
         let record = json!({ "iteration": 7, "samples": 70, "phase": 1, "gait": "walk", "timing": {}, "termination/fall": 2,
             "termination/time_out": 1, "termination/stray": 9, "termination/fault": 0,
-            "reward/track": 0.25, "gate/upright": 0.99 });
+            "reward/track": 0.25, "gate/upright": 0.99, "expert_score": 0.98, "policy_score": -0.97,
+            "style_std": 0.02 });
         run::Metrics::open(&folder.metrics_path())
             .unwrap()
             .append(&record)
@@ -164,6 +166,10 @@ mod tests {
         assert!(words.contains("1 checkpoint, the newest"), "{words}");
         assert!(
             words.contains("task: gate/upright 0.990, reward/track 0.250"),
+            "{words}"
+        );
+        assert!(
+            words.contains("tells every transition apart (scores 0.98 and -0.97"),
             "{words}"
         );
         assert!(

@@ -23,6 +23,7 @@
 //! | one discriminator update, and the transitions it remembers | [`discrimination`], [`replay`] |
 //! | how wide actions are drawn | [`exploration`] |
 //! | what is known of the robot | [`robot`] |
+//! | whether the discriminator still has an opinion | [`saturation`] |
 #![forbid(unsafe_code)]
 
 pub mod batch;
@@ -40,6 +41,7 @@ pub mod ppo;
 pub mod replay;
 mod report;
 pub mod robot;
+pub mod saturation;
 mod saved;
 pub mod style;
 pub mod surrogate;
@@ -51,6 +53,7 @@ pub use error::LearningError;
 pub use learning::{Clock, Learning};
 pub use report::{IterationReport, Seconds};
 pub use robot::{FeatureKind, JointGroup, Mirror, Robot};
+pub use saturation::{Saturation, Scores};
 
 /// Numbers of a policy observation (III-A).
 pub const OBSERVATION: usize = 82;

@@ -4,6 +4,8 @@ use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 use vocabulary::{Cause, Counts};
 
+use crate::saturation::Scores;
+
 /// Figures of one iteration. All but [`Self::seconds`] are the same for the same inputs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct IterationReport {
@@ -73,6 +75,17 @@ pub struct IterationReport {
 
     /// Where the time went.
     pub seconds: Seconds,
+}
+
+impl IterationReport {
+    /// What the discriminator made of it.
+    pub fn scores(&self) -> Scores {
+        Scores {
+            expert: self.expert_score,
+            policy: self.policy_score,
+            style_std: self.style_std,
+        }
+    }
 }
 
 /// Seconds of wall time of an iteration's parts.

@@ -30,6 +30,12 @@ impl Bounds {
         }
     }
 
+    /// Whether the lower and the upper bound lie outside what Eq. 7 can pay, 0 to 1: Eq. 12 then never gives one of the
+    /// rewards all the weight.
+    pub fn idle(&self) -> [bool; 2] {
+        [self.lower < 0.0, self.upper > 1.0]
+    }
+
     /// μ lower.
     pub fn lower(&self) -> f64 {
         self.lower
@@ -55,6 +61,15 @@ mod tests {
     fn bounds_stand_k_deviations_from_the_mean() {
         let bounds = Bounds::around(0.5, 0.125, 0.75); // 0.5 ± 2·0.125
         assert_eq!((bounds.lower(), bounds.upper()), (0.25, 0.75));
+    }
+
+    #[test]
+    fn bounds_outside_the_reward_s_range_are_idle() {
+        let idle = |mean, deviation| Bounds::around(mean, deviation, 0.75).idle(); // mean ± 2·deviation
+        assert_eq!(idle(0.5, 0.25), [false, false]); // 0 and 1 can be reached
+        assert_eq!(idle(0.5, 0.375), [true, true]); // −0.25, 1.25
+        assert_eq!(idle(0.25, 0.25), [true, false]); // −0.25, 0.75
+        assert_eq!(idle(0.75, 0.25), [false, true]); // 0.25, 1.25
     }
 
     #[test]

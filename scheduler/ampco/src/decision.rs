@@ -37,6 +37,17 @@ impl Switch {
     pub fn warning(&self) -> Option<Warning> {
         (self.trend < 0.0).then_some(Warning::RewardWasFalling { trend: self.trend })
     }
+
+    /// What its bounds leave undone, see [`Bounds::idle`].
+    fn idle(&self) -> Option<Warning> {
+        let (lower, upper) = (self.bounds.lower(), self.bounds.upper());
+        match self.bounds.idle() {
+            [false, false] => None,
+            [true, false] => Some(Warning::LowerBoundIsIdle { lower }),
+            [false, true] => Some(Warning::UpperBoundIsIdle { upper }),
+            [true, true] => Some(Warning::BoundsAreIdle { lower, upper }),
+        }
+    }
 }
 
 /// A doubt about the phase switch. It is told, not acted upon: the rule is Algorithm 1's.
@@ -49,6 +60,35 @@ pub enum Warning {
     RewardWasFalling {
         /// Slope of the reward window, below zero.
         trend: f64,
+    },
+    /// The style reward, 0 to 1, reaches neither bound of Eq. 13.
+    #[error(
+        "the bounds of Eq. 13, {lower:.3} and {upper:.3}, are wider than the style reward's range, 0 to 1: they bind nothing; \
+         a lower scheduler.alpha or bounds_from = \"window\" makes them narrower"
+    )]
+    BoundsAreIdle {
+        /// μ lower.
+        lower: f64,
+        /// μ upper.
+        upper: f64,
+    },
+    /// The style reward, 0 to 1, never sinks to the lower bound.
+    #[error(
+        "the lower bound of Eq. 13, {lower:.3}, is below the style reward's range, 0 to 1: it binds nothing, and style never \
+         gets all the weight"
+    )]
+    LowerBoundIsIdle {
+        /// μ lower.
+        lower: f64,
+    },
+    /// The style reward, 0 to 1, never rises to the upper bound.
+    #[error(
+        "the upper bound of Eq. 13, {upper:.3}, is above the style reward's range, 0 to 1: it binds nothing, and the task never \
+         gets all the weight"
+    )]
+    UpperBoundIsIdle {
+        /// μ upper.
+        upper: f64,
     },
 }
 
@@ -98,6 +138,14 @@ impl Decision {
     /// What speaks against the switch that was made; stands as long as phase II does.
     pub fn warning(&self) -> Option<Warning> {
         self.switch().and_then(|switch| switch.warning())
+    }
+
+    /// What the bounds leave undone where the rule in force is made of them.
+    pub fn idle_bounds(&self) -> Option<Warning> {
+        let bounded = matches!(self.rule, Rule::Bounded { .. });
+        self.switch()
+            .filter(|_| bounded)
+            .and_then(|switch| switch.idle())
     }
 
     fn switch(&self) -> Option<Switch> {

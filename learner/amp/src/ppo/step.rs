@@ -21,7 +21,7 @@ impl Ppo {
         });
         let waits = minibatch.rows.critic_alone;
         if waits {
-            // Of nothing Adam makes nothing, unless it remembers more: a policy without a critic comes without that.
+            // With a gradient of 0 and moments of 0 Adam changes nothing; a policy that comes without a critic has no moments.
             let (actor, rest) = total.gradient.split_at_mut(self.actor.len());
             actor.fill(0.0);
             rest[self.critic.len()..].fill(0.0);

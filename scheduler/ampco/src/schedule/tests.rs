@@ -120,6 +120,28 @@ fn a_negative_trend_at_the_switch_is_warned_of() {
 }
 
 #[test]
+fn bounds_that_bind_nothing_are_told_where_they_would_bind() {
+    let config = ScheduleConfig {
+        alpha: 0.96, // k = √(1/0.04) = 5
+        bounds_from: BoundsSource::Window,
+        ..tiny()
+    };
+    // 0.5 0.4 0.3: 0.4 ± 5·0.0816497 = −0.008 and 0.808
+    let last = run(&config, SEVEN)[6];
+    let Some(Warning::LowerBoundIsIdle { lower }) = last.idle_bounds() else {
+        panic!("{last:?}")
+    };
+    assert!((lower + 0.008_248).abs() < 1e-6);
+    assert_eq!(run(&config, SEVEN)[0].idle_bounds(), None);
+    // A rule that is not made of bounds has none that could bind.
+    let fixed = Decision {
+        rule: Rule::Fixed { style_weight: 0.5 },
+        ..last
+    };
+    assert_eq!(fixed.idle_bounds(), None);
+}
+
+#[test]
 fn half_full_windows_decide_nothing() {
     let decisions = run(&short(), (0..51).map(|_| 0.3));
     assert!(
