@@ -1,7 +1,7 @@
 //! Gait measures of a batch: the one place that knows how its rows follow each other in time.
 //!
-//! They are of the robots that are told to go forward or back, if there are any. Hips of who steps aside, turns or
-//! stands are no less in phase than out of it, and the mean of all said "shuffle" of robots that all did as told.
+//! They are of the robots that are told to go forward or back, if there are any. Hips of a robot that steps aside, turns
+//! or stands are no less in phase than out of it, and the mean of all robots would be a shuffle.
 
 use amp::{Batch, Segment};
 use g1::gait::{Conduct, Feet, Verdict, speed_use};

@@ -118,7 +118,7 @@ fn details(out: &mut impl Write, clip: &Clip, found: &Examination) -> Result<()>
     )?;
     writeln!(
         out,
-        "    who moves exactly so is off its command by {:.3} m/s, {:.3} m/s of it aside, and by {:.3} rad/s",
+        "    a robot that moves exactly so is off its command by {:.3} m/s, {:.3} m/s of it aside, and by {:.3} rad/s",
         quality.tracking.rmse, quality.tracking.rmse_lateral, quality.tracking.rmse_yaw_rate
     )?;
     writeln!(

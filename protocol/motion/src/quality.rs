@@ -35,7 +35,7 @@ pub struct Quality {
     pub speed: f64,
     /// Mean yaw rate, rad/s.
     pub yaw_rate: f64,
-    /// How well who moves exactly so obeys the clip's command.
+    /// How well a robot that moves exactly so obeys the clip's command.
     pub tracking: Tracking,
     /// Speeds over half a second that 5 % and 95 % of frames stay below, m/s.
     pub speed_range: [f64; 2],

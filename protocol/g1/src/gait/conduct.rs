@@ -1,7 +1,7 @@
 //! What robots do, by what they are asked: steps that ask to go, to turn on the spot and to stay are judged apart.
 //!
-//! Separate because signs of one are faults of another (who turns on the spot steps, who stands does not), and because hips
-//! that rest while a robot stands, counted among those of its walk, make any correlation.
+//! Separate because signs of one are faults of another (a robot that turns on the spot steps, one that stands does not),
+//! and because hips that rest while a robot stands, counted among those of its walk, make any correlation.
 
 use super::{Aim, Gait, Pace, Signs, Verdict};
 

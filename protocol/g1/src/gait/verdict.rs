@@ -202,8 +202,8 @@ impl Verdict {
     }
 
     fn of_turning(signs: &Signs, turn: Part) -> Self {
-        // As of sideways steps. Who turns slowly has both feet down most of the time, so that they need not alternate as
-        // in a walk.
+        // As of sideways steps. A robot that turns slowly has both feet down most of the time, so that they need not
+        // alternate as in a walk.
         let contacts = signs.contact_correlation.unwrap_or_default();
         if contacts > PATTERN && signs.steps() {
             return Self::Hop(contacts, false);

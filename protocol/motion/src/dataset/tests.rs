@@ -50,7 +50,7 @@ fn a_window_tells_the_command_that_it_obeys() {
     let walk = Dataset::of(vec![gait::walk(0.8).expect("a gait")]);
     let asked = walk.clips()[0].command;
     assert_eq!(walk.sample_window(&mut rng, &mut window), asked);
-    // Who sets off is not there yet: its speed as of now, between none and the last.
+    // A robot that sets off is not there yet: its speed as of now, between none and the last.
     let start = Dataset::of(vec![gait::start(0.8).expect("a gait")]);
     let speeds: Vec<f32> = (0..300)
         .map(|_| {

@@ -1,7 +1,7 @@
 //! How well a robot that moves exactly as a clip obeys the clip's own command.
 //!
-//! Separate because it is the bound of a wish: a pelvis sways and turns within a stride, and who walks as
-//! the clip does cannot have less of an error, by the measures by which policies are judged.
+//! Separate because it is the bound of a wish: a pelvis sways and turns within a stride, and a robot that
+//! walks as the clip does cannot have less of an error, by the measures by which policies are judged.
 
 use crate::clip::Clip;
 use serde::Serialize;

@@ -37,7 +37,7 @@ pub(crate) fn of(imported: &Imported, file: &Path) -> Vec<Defect> {
 /// The defects of a clip with those that its source had: of a kind that both have, the worse.
 pub(super) fn join(found: &mut Vec<Defect>, source: &[Defect], down: bool) {
     for defect in source {
-        // Where the soles of somebody who lies are says nothing about the ground.
+        // Where the soles of a person on the floor are says nothing about the ground.
         if down && defect.kind == Kind::Drift {
             continue;
         }
