@@ -1,8 +1,8 @@
 //! The house: what stands on what, read from the manifests.
 //!
 //! A crate may lean on its own floor and on those below. The floor follows from the folder: what processes share lies
-//! under `protocol/`; crates nested in a process are pure; the process itself is a shell; `deploy/` uses all of them, and
-//! `tests/` is above.
+//! under `protocol/`; crates nested in a process are pure; the process itself is a shell; `deploy/` and the crates
+//! nested in `tests/` use all of them, and the tests themselves are above.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -22,8 +22,8 @@ fn floor(folder: &str) -> Option<u8> {
         ("protocol", _) => Some(0),
         ("actor" | "learner" | "scheduler", true) => Some(1),
         ("actor" | "learner" | "scheduler", false) => Some(2),
-        ("deploy", true) => Some(3),
-        ("tests", _) => Some(4),
+        ("deploy" | "tests", true) => Some(3),
+        ("tests", false) => Some(4),
         _ => None,
     }
 }

@@ -44,7 +44,8 @@ impl Runs {
     pub(crate) fn resume(&self, name: &str, arguments: &[&str]) -> Process {
         let mut command = Command::new(program("ampco"));
         command
-            .args(["train", "--resume", "--run", name, "--runs-dir"])
+            .args(["train", "--resume", "--no-pictures"])
+            .args(["--run", name, "--runs-dir"])
             .arg(self.path())
             .args(arguments);
         Process::start(command)
@@ -54,7 +55,8 @@ impl Runs {
     pub(crate) fn train(&self, name: &str, arguments: &[&str]) -> Process {
         let mut command = Command::new(program("ampco"));
         command
-            .args(["train", "--preset", "smoke", "--run", name, "--runs-dir"])
+            .args(["train", "--preset", "smoke", "--no-pictures"])
+            .args(["--run", name, "--runs-dir"])
             .arg(self.path())
             // Endless, unless the test says otherwise.
             .args(["--set", "run.iterations=0"])

@@ -19,6 +19,7 @@ mod isolation;
 mod licences;
 mod outputs;
 mod pair;
+mod pictures;
 mod pressure;
 mod readme;
 mod repeat;

@@ -65,6 +65,9 @@ fn plan(arguments: &[String], place: &Path, trained: u32, missing: &BTreeSet<Str
             }
             put(&mut short, "--iterations", &(2 * (trained + 1)).to_string());
             put(&mut short, "--actors", "1");
+            if trained > 0 {
+                short.push("--no-pictures".to_owned());
+            }
         }
         "evaluate" => {
             put(&mut short, "--seconds", "0.04");

@@ -3,13 +3,15 @@
 //! What is watched becomes a recording first; a page or a data file is made of that, so nothing here draws.
 
 mod clip;
-mod policy;
+pub(crate) mod policy;
 
 use std::path::PathBuf;
 
 use anyhow::Result;
 use judge::Command;
 use playback::{Recording, page};
+use policy::Show;
+use sim::RandomizationConfig;
 use terminal::failure::usage;
 use terminal::{Engine, Place, console, file};
 
@@ -67,7 +69,7 @@ impl Play {
         }
         let recording = match clip::Source::parse(&self.what) {
             Some(source) => clip::record(&source, self.fps, self.seconds)?,
-            None => policy::record(self)?,
+            None => policy::record(&Subject::open(&self.place, &self.what)?, &self.show())?,
         };
         if let Some(path) = &self.html {
             file::write(path, page::html(&recording).as_bytes())?;
@@ -78,11 +80,22 @@ impl Play {
         say(&recording)
     }
 
-    /// The commands in order; each holds for an equal share of the time.
-    fn commands(&self) -> Vec<[f32; 3]> {
-        match self.commands.as_slice() {
-            [] => vec![[0.8, 0.0, 0.0]],
-            given => given.iter().map(|command| command.0).collect(),
+    fn show(&self) -> Show {
+        Show {
+            commands: match self.commands.as_slice() {
+                [] => vec![[0.8, 0.0, 0.0]],
+                given => given.iter().map(|command| command.0).collect(),
+            },
+            seconds: self.seconds,
+            randomization: if self.randomize {
+                RandomizationConfig::default()
+            } else {
+                RandomizationConfig::none()
+            },
+            from_reference: self.from_reference,
+            physics: self.physics.into(),
+            seed: self.seed,
+            again: false,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `ampco plot`: the learning curves of runs, from their metrics alone.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use plots::{Axis, Band, Colour, Figure, Line, LineChart, Mark, Panel, smooth};
@@ -8,6 +8,9 @@ use run::{Folder, metrics};
 use serde::Deserialize;
 use terminal::failure::usage;
 use terminal::{Place, console, file};
+
+/// Name of the curves of a run in its folder.
+pub(crate) const CURVES_FILE: &str = "curves.svg";
 
 /// Points of a curve: as many as a figure can show.
 const POINTS: usize = 150;
@@ -99,17 +102,22 @@ impl Plot {
                 .map(|name| self.place.find(Some(name)))
                 .collect::<Result<_>>()?,
         };
-        let mut runs = Vec::new();
-        for folder in &folders {
-            runs.push((folder.name(), records(folder)?));
-        }
         let out = match &self.out {
             Some(out) => out.clone(),
-            None => folders[0].path().join("curves.svg"),
+            None => folders[0].path().join(CURVES_FILE),
         };
-        file::write(&out, figure(&runs).svg().as_bytes())?;
+        draw(&folders, &out)?;
         console::print(&format!("{}\n", out.display()))
     }
+}
+
+/// Draws the curves of runs into a file.
+pub(crate) fn draw(folders: &[Folder], out: &Path) -> Result<()> {
+    let mut runs = Vec::new();
+    for folder in folders {
+        runs.push((folder.name(), records(folder)?));
+    }
+    file::write(out, figure(&runs).svg().as_bytes())
 }
 
 fn records(folder: &Folder) -> Result<Vec<Record>> {

@@ -101,7 +101,7 @@ fn describe(folder: &Folder, status: &Value) -> Result<String> {
     });
     lines.extend(figures::terms(&status["metrics"]));
     lines.extend(figures::ends(&status["metrics"]));
-    lines.extend(figures::saturation(&status["metrics"]));
+    lines.extend(saturation(&status["metrics"]));
     let timing = Figures::read(&status["metrics"]).and_then(|figures| figures.timing.split());
     lines.extend(timing.map(|split| format!("time: {split}")));
     let processes = status["processes"].as_object().into_iter().flatten();
@@ -117,6 +117,16 @@ fn describe(folder: &Folder, status: &Value) -> Result<String> {
         None => "no checkpoint".to_owned(),
     });
     Ok(lines.join("\n"))
+}
+
+/// In words that the discriminator tells every transition apart; `None` where it does not, or a line does not say.
+fn saturation(line: &Value) -> Option<String> {
+    let scores = amp::Scores {
+        expert: line["expert_score"].as_f64()?,
+        policy: line["policy_score"].as_f64()?,
+        style_std: line["style_std"].as_f64()?,
+    };
+    scores.are_saturated().then(|| scores.to_string())
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! `ampco train`: from options to a running group.
 
+mod pictures;
 mod resumed;
 
 use std::path::Path;
@@ -16,7 +17,7 @@ use motion::quality::{Severity, line, severity};
 use protocol::RolloutLayout;
 use run::motion::Print;
 use run::{Config, Folder};
-use supervise::Launch;
+use supervise::{Ending, Launch};
 use terminal::Place;
 use terminal::console::say;
 use terminal::failure::usage;
@@ -56,6 +57,9 @@ pub(crate) struct Train {
     /// million samples (ppo.critic_first)
     #[arg(long, value_name = "RUN|FOLDER", conflicts_with = "resume")]
     from: Option<String>,
+    /// Draw nothing at the end: else play.html (the policy at four commands) and curves.svg are written to the run's folder
+    #[arg(long)]
+    no_pictures: bool,
     /// Go on from the last checkpoint of --run, or of the newest run; without one, from its start. What is set otherwise
     /// than before is told and counts from there on; what a checkpoint cannot take, such as other networks, is refused
     #[arg(long)]
@@ -93,12 +97,16 @@ impl Train {
             count(resolved.fleet.environments_per_actor(), "environment"),
             count(resolved.fleet.steps, "step"),
         ));
-        supervise::supervise(&Launch {
+        let ending = supervise::supervise(&Launch {
             folder,
             run: &resolved.run,
             fleet: &resolved.fleet,
             resume: !folder.checkpoints().list().is_empty(),
-        })
+        })?;
+        if ending == Ending::InOrder && !self.no_pictures {
+            pictures::draw(&self.place, folder);
+        }
+        Ok(())
     }
 
     fn new_run(&self) -> Result<Ready> {

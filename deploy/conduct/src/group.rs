@@ -46,6 +46,8 @@ impl Standing {
 pub(super) fn train(planned: &Planned, folder: &StudyFolder, standing: Standing) -> Result<Child> {
     let name = &planned.name;
     let mut arguments: Vec<OsString> = vec!["train".into(), "--run".into(), name.into()];
+    // The study's report has figures of its own.
+    arguments.push("--no-pictures".into());
     arguments.extend(["--runs-dir".into(), folder.runs().into()]);
     if standing == Standing::New {
         // Killed before its first checkpoint: there is nothing to go on from, and lines that would be in the way.

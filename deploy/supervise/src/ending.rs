@@ -12,7 +12,7 @@ use wording::count;
 use super::group::Group;
 use super::roles::{self, LEARNER, is_actor};
 use super::stop::Stop;
-use super::{LOOK, Reason};
+use super::{Ending, LOOK, Reason};
 use crate::programs;
 
 /// Actors that the learner has told to save and stop get this long before they are told again.
@@ -20,7 +20,7 @@ const GRACE: Duration = Duration::from_secs(5);
 
 impl Group<'_> {
     /// Ends everyone in order: the learner first, since it tells the actors to save.
-    pub(super) async fn end(mut self, reason: Reason, stop: &mut Stop) -> Result<()> {
+    pub(super) async fn end(mut self, reason: Reason, stop: &mut Stop) -> Result<Ending> {
         if !matches!(reason, Reason::Complete) {
             self.console.say(match &reason {
                 Reason::TimeUp => "time is up: finishing the iteration",
@@ -65,8 +65,8 @@ impl Group<'_> {
                 let account = programs::account(status, said, &log, before);
                 bail!("{role} is given up; it {account}")
             }
-            _ if forced => Ok(()),
-            _ => self.nothing_lost(),
+            _ if forced => Ok(Ending::Forced),
+            _ => self.nothing_lost().map(|()| Ending::InOrder),
         }
     }
 

@@ -55,8 +55,17 @@ enum Reason {
     Failed(anyhow::Error),
 }
 
+/// How a group has ended that did not fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// With its last iteration in a checkpoint.
+    InOrder,
+    /// At once, because the end was asked for twice.
+    Forced,
+}
+
 /// Starts the group, watches it to its end, and leaves nothing behind.
-pub fn supervise(launch: &Launch<'_>) -> Result<()> {
+pub fn supervise(launch: &Launch<'_>) -> Result<Ending> {
     programs::runtime()?.block_on(async {
         let mut stop = Stop::install()?;
         let domain = Domain::for_run(launch.folder.path())?;

@@ -154,16 +154,6 @@ pub fn ends(line: &Value) -> Option<String> {
     Some(format!("episodes ended: {}", counts?.join(", ")))
 }
 
-/// In words that the discriminator tells every transition apart; `None` where it does not, or a line does not say.
-pub(crate) fn saturation(line: &Value) -> Option<String> {
-    let scores = amp::Scores {
-        expert: line["expert_score"].as_f64()?,
-        policy: line["policy_score"].as_f64()?,
-        style_std: line["style_std"].as_f64()?,
-    };
-    scores.are_saturated().then(|| scores.to_string())
-}
-
 /// What the terms of the task came to, by name; `None` where a line does not say.
 pub fn terms(line: &Value) -> Option<String> {
     let told = line.as_object()?.iter().filter_map(|(key, value)| {

@@ -191,7 +191,8 @@ fn start(place: &Place, folder: &Folder, arguments: &[String]) -> Result<Child> 
         .open(&path)
         .with_context(|| format!("opening {}", path.display()))?;
     Command::new(programs::find("ampco")?)
-        .args(["train", "--run", &folder.name(), "--runs-dir"])
+        .args(["train", "--no-pictures", "--run", &folder.name()])
+        .arg("--runs-dir")
         .arg(&place.runs_dir)
         .args(arguments)
         .env(

@@ -69,7 +69,7 @@ impl Stage {
     pub(crate) fn ampco(&self, arguments: &[&str]) -> Guard {
         let mut command = Command::new(self.path("ampco"));
         command
-            .args(["train", "--run", "play", "--runs-dir"])
+            .args(["train", "--no-pictures", "--run", "play", "--runs-dir"])
             .arg(self.path("runs"))
             .args(arguments)
             .stdin(Stdio::null())
