@@ -161,7 +161,9 @@ impl State {
         let mut experts = |rows: &mut [f32]| {
             for row in rows.chunks_exact_mut(judge.width()) {
                 let (states, seen) = row.split_at_mut(judge.frames * amp::FEATURES);
-                let command = config.experts.sample_window(generator, states);
+                let command = config
+                    .experts
+                    .sample_window(generator, judge.spacing, states);
                 for (i, blur) in judge.command_blur.iter().flatten().enumerate() {
                     seen[i] = command[i] + generator.random_range(-blur..=*blur);
                 }

@@ -18,12 +18,15 @@ const TOGETHER: usize = 1_024;
 /// A discriminator with memory for what it has seen and for windows that wait to be scored.
 pub struct Judge {
     learning: Learning,
-    /// States that a window has.
+    /// States that a window has, and steps from one to the next.
     frames: usize,
+    spacing: usize,
     /// Whether a window ends with the command.
     sees_command: bool,
-    /// The last states of each robot but the newest, `[robot][frames − 1][53]`.
+    /// The last states of each robot but the newest, `[robot][(frames − 1)·spacing][53]`, oldest first.
     seen: Vec<f32>,
+    /// How many of these are of the episode.
+    known: Vec<usize>,
     waiting: Vec<f32>,
     rewards: Vec<f32>,
     sum: f64,
@@ -33,7 +36,7 @@ impl Judge {
     /// The discriminator of a checkpoint.
     pub fn of(kept: &Kept) -> Result<Self> {
         let mut config = kept.learning.clone();
-        let frames = config.discriminator.frames;
+        let (frames, spacing) = (config.discriminator.frames, config.discriminator.spacing);
         let sees_command = config.discriminator.command_blur.is_some();
         // Episodes are spread over threads already.
         config.ppo.threads = 1;
@@ -49,8 +52,10 @@ impl Judge {
         Ok(Self {
             learning,
             frames,
+            spacing,
             sees_command,
             seen: Vec::new(),
+            known: Vec::new(),
             waiting: Vec::new(),
             rewards: Vec::new(),
             sum: 0.0,
@@ -62,8 +67,8 @@ impl Judge {
         (JUDGE, self.learning.save_judge())
     }
 
-    /// Takes one step of one robot: the features (53) before and after it, and the command in force. Before the first
-    /// step of an episode nothing is known, so its first state stands for those before, as in training.
+    /// Takes one step of one robot: the features (53) before and after it, and the command in force. What an episode has
+    /// not yet seen is as the oldest state of the window that it has, as in training.
     pub(super) fn take(
         &mut self,
         robot: usize,
@@ -71,20 +76,26 @@ impl Judge {
         [before, after]: [&[f32]; 2],
         command: &[f32; 3],
     ) {
-        let size = (self.frames - 1) * FEATURES;
-        if self.seen.len() < (robot + 1) * size {
+        let depth = (self.frames - 1) * self.spacing;
+        let size = depth * FEATURES;
+        if self.known.len() <= robot {
+            self.known.resize(robot + 1, 0);
             self.seen.resize((robot + 1) * size, 0.0);
         }
         let seen = &mut self.seen[robot * size..][..size];
-        if first {
-            for state in seen.chunks_exact_mut(FEATURES) {
-                state.copy_from_slice(before);
-            }
-        } else {
-            seen.copy_within(FEATURES.., 0);
-            seen[size - FEATURES..].copy_from_slice(before);
+        seen.copy_within(FEATURES.., 0);
+        seen[size - FEATURES..].copy_from_slice(before);
+        let known = if first { 1 } else { self.known[robot] + 1 }.min(depth);
+        self.known[robot] = known;
+        // States of the window before the newest that there are.
+        let real = known / self.spacing;
+        for back in (1..self.frames).rev() {
+            let state = match back.min(real) {
+                0 => after,
+                there => &seen[size - there * self.spacing * FEATURES..][..FEATURES],
+            };
+            self.waiting.extend_from_slice(state);
         }
-        self.waiting.extend_from_slice(seen);
         self.waiting.extend_from_slice(after);
         if self.sees_command {
             self.waiting.extend_from_slice(command);

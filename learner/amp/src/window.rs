@@ -1,8 +1,9 @@
 //! What the discriminator looks at: the paper's pair of successive states, or a longer window of motion.
 //!
 //! Separate because rows, memory and reference motion must be cut alike. A pair shows a pose and how fast it changes,
-//! not a rhythm; other trainers show 4 to 10 states. A row whose episode or rollout began only just now has no longer
-//! past: the oldest state stands for those before it. Experts are then cut as short as rows of the batch are, or the
+//! not a rhythm; other trainers show 4 to 10 states, and states some steps apart show more of it than as many side by
+//! side. A row whose episode or rollout began only just now has no longer past: the oldest state that there is stands
+//! for those before it. Experts are then cut as short as rows of the batch are, or the
 //! cut itself would tell the two apart.
 
 use crate::batch::Batch;
@@ -14,8 +15,10 @@ use std::ops::Range;
 /// What windows are cut to.
 #[derive(Clone, Debug)]
 pub(crate) struct Cut {
-    /// Successive states.
+    /// States.
     pub(crate) frames: usize,
+    /// Control steps from one of them to the next.
+    pub(crate) spacing: usize,
     /// Where an observation holds the command, if that is seen too.
     command: Option<Range<usize>>,
 }
@@ -25,8 +28,15 @@ impl Cut {
     pub(crate) fn new(config: &DiscriminatorConfig, robot: &Robot) -> Self {
         Self {
             frames: config.frames,
+            spacing: config.spacing,
             command: config.command_blur.map(|_| robot.command.clone()),
         }
+    }
+
+    /// Steps back from the row of one state to that of the state before it, if `real` states are there already. The
+    /// newest is the row's next one, so the row itself is a step back.
+    fn hops(&self, real: usize) -> usize {
+        self.spacing - usize::from(real == 1)
     }
 
     /// Numbers of the states alone.
@@ -60,41 +70,50 @@ impl Past {
         }
     }
 
-    /// States of a row's window that there are, its next state included: from 2 to `frames`.
-    pub(crate) fn real(&self, row: usize, frames: usize) -> usize {
-        let mut row = row as u32;
-        for real in 2..frames {
-            row = self.before[row as usize];
-            if row == NONE {
-                return real;
+    /// States of a row's window that there are, its next state included: from 1 to `frames`; of successive states there
+    /// are two or more.
+    pub(crate) fn real(&self, row: usize, cut: &Cut) -> usize {
+        let mut row = row;
+        for real in 1..cut.frames {
+            match self.back(row, cut.hops(real)) {
+                Some(before) => row = before,
+                None => return real,
             }
         }
-        frames
+        cut.frames
+    }
+
+    /// The row so many steps before, if that is in the same rollout and episode.
+    fn back(&self, row: usize, steps: usize) -> Option<usize> {
+        (0..steps).try_fold(row, |row, _| {
+            let before = self.before[row];
+            (before != NONE).then_some(before as usize)
+        })
     }
 
     /// Appends a row's window: `[frames][53]`, oldest state first, then the command if that is seen.
     pub(crate) fn write(&self, batch: &Batch, row: usize, cut: &Cut, out: &mut Vec<f32>) {
-        let (start, frames) = (out.len(), cut.frames);
+        let start = out.len();
         out.resize(start + cut.states(), 0.0);
-        self.write_states(batch, row, frames, &mut out[start..]);
+        self.write_states(batch, row, cut, &mut out[start..]);
         if let Some(command) = cut.command.clone() {
             out.extend_from_slice(&batch.observations[row * OBSERVATION..][command]);
         }
     }
 
-    fn write_states(&self, batch: &Batch, row: usize, frames: usize, window: &mut [f32]) {
-        window[(frames - 1) * FEATURES..]
+    fn write_states(&self, batch: &Batch, row: usize, cut: &Cut, window: &mut [f32]) {
+        let newest = cut.frames - 1;
+        window[newest * FEATURES..]
             .copy_from_slice(&batch.next_features[row * FEATURES..][..FEATURES]);
         let mut row = row;
-        for place in (0..frames - 1).rev() {
-            window[place * FEATURES..][..FEATURES]
-                .copy_from_slice(&batch.features[row * FEATURES..][..FEATURES]);
-            if self.before[row] != NONE {
-                row = self.before[row] as usize;
-            } else {
-                repeat_oldest(window, frames - place);
+        for real in 1..cut.frames {
+            let Some(before) = self.back(row, cut.hops(real)) else {
+                repeat_oldest(window, real);
                 break;
-            }
+            };
+            row = before;
+            window[(newest - real) * FEATURES..][..FEATURES]
+                .copy_from_slice(&batch.features[row * FEATURES..][..FEATURES]);
         }
     }
 }
@@ -133,10 +152,18 @@ mod tests {
     }
 
     fn window(row: usize, frames: usize) -> Vec<f32> {
+        spaced(row, frames, 1)
+    }
+
+    fn spaced(row: usize, frames: usize, spacing: usize) -> Vec<f32> {
         let batch = batch();
         let (mut past, mut out) = (Past::default(), vec![]);
         past.of(&batch);
-        let cut = |command| Cut { frames, command };
+        let cut = |command| Cut {
+            frames,
+            spacing,
+            command,
+        };
         past.write(&batch, row, &cut(None), &mut out);
         assert_eq!(out.len(), frames * FEATURES);
         let mut with_command = vec![];
@@ -167,8 +194,28 @@ mod tests {
     fn what_is_real_is_counted() {
         let mut past = Past::default();
         past.of(&batch());
-        let real = |row| past.real(row, 4);
-        assert_eq!([real(6), real(2), real(0)], [4, 3, 2]);
-        assert_eq!([real(5), real(7), past.real(6, 2)], [2, 3, 2]);
+        let real = |row, frames, spacing| {
+            let cut = Cut {
+                frames,
+                spacing,
+                command: None,
+            };
+            past.real(row, &cut)
+        };
+        assert_eq!([6, 2, 0].map(|row| real(row, 4, 1)), [4, 3, 2]);
+        assert_eq!([real(5, 4, 1), real(7, 4, 1), real(6, 2, 1)], [2, 3, 2]);
+        assert_eq!([6, 4, 2, 0].map(|row| real(row, 3, 2)), [3, 2, 2, 1]);
+        // Robot 1 began anew at its third step.
+        assert_eq!([5, 7].map(|row| real(row, 3, 2)), [1, 2]);
+    }
+
+    #[test]
+    fn states_may_be_some_steps_apart() {
+        assert_eq!(spaced(6, 3, 2), [0.0, 2.0, 4.0]);
+        assert_eq!(spaced(6, 2, 3), [1.0, 4.0]);
+        // What is not there is as the oldest that is; a state alone says nothing of motion, and none is made up.
+        assert_eq!(spaced(4, 3, 2), [1.0, 1.0, 3.0]);
+        assert_eq!(spaced(0, 3, 2), [1.0; 3]);
+        assert_eq!(spaced(7, 3, 2), [12.0, 12.0, 14.0]);
     }
 }

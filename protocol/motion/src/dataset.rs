@@ -157,7 +157,7 @@ impl Dataset {
             })
     }
 
-    /// Draws a window of motion: the features of successive steps, oldest first, 53 numbers each; every
+    /// Draws a window of motion: the features of states `spacing` steps apart, oldest first, 53 numbers each; every
     /// transition is equally often its end. In a cyclic clip the first frame follows the last; before
     /// the first frame of another clip there is nothing but that frame. Allocates nothing.
     ///
@@ -165,12 +165,12 @@ impl Dataset {
     /// wanders, the window's mean velocity.
     ///
     /// # Panics
-    /// If `out` is not as long as two steps or more.
-    pub fn sample_window(&self, rng: &mut impl Rng, out: &mut [f32]) -> [f32; 3] {
+    /// If `out` is not as long as two states or more.
+    pub fn sample_window(&self, rng: &mut impl Rng, spacing: usize, out: &mut [f32]) -> [f32; 3] {
         let steps = out.len() / FEATURES;
         assert!(
             steps >= 2 && out.len().is_multiple_of(FEATURES),
-            "a window has 53 numbers for each of two steps or more"
+            "a window has 53 numbers for each of two states or more"
         );
         let (index, i) = match &self.strata {
             Some(strata) => strata.draw(rng),
@@ -182,9 +182,9 @@ impl Dataset {
         let clip = &self.clips[index];
         let length = clip.frames.len();
         for (place, state) in out.chunks_exact_mut(FEATURES).enumerate() {
-            // Steps from the window's last but one, which is frame i.
-            let ahead = place as isize - (steps as isize - 2);
-            let frame = i as isize + ahead;
+            // The newest is the end of transition i.
+            let back = (steps - 1 - place) * spacing;
+            let frame = (i + 1) as isize - back as isize;
             let frame = if clip.cyclic {
                 frame.rem_euclid(length as isize)
             } else {

@@ -116,7 +116,11 @@ const TABLE: &[(&str, Rule, &[&str])] = &[
         &["critic_first", "symmetry_weight", "symmetry_share"],
     ),
     ("ppo", Free, &["threads"]),
-    ("discriminator", Fixed(SHAPE), &["frames", "hidden"]),
+    (
+        "discriminator",
+        Fixed(SHAPE),
+        &["frames", "spacing", "hidden"],
+    ),
     ("discriminator", Present(SHAPE), &["command_blur"]),
     (
         "discriminator",

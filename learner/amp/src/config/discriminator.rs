@@ -9,8 +9,11 @@ use vocabulary::Checked;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DiscriminatorConfig {
-    /// Successive states that it looks at. The paper's pair; longer windows show rhythm (see [`crate::window`]).
+    /// States that it looks at. The paper's pair; longer windows show rhythm (see [`crate::window`]).
     pub frames: usize,
+    /// Control steps from one of these states to the next. The paper's are successive (1); six states three steps apart
+    /// span 0.3 s, half a step of walking.
+    pub spacing: usize,
     /// Whether it also sees how far the velocity is off the command, and of reference motion off its clip's own. That
     /// is blurred by so much either way (m/s, m/s, rad/s), so that an error below it is nothing odd. Default: it does
     /// not, as in the paper. Then any motion of the data is good style whatever was asked for, and of those standing
@@ -64,6 +67,7 @@ impl Default for DiscriminatorConfig {
     fn default() -> Self {
         Self {
             frames: 2,
+            spacing: 1,
             command_blur: None,
             hidden: vec![256, 128],
             steps: 3,
@@ -108,6 +112,12 @@ impl DiscriminatorConfig {
                 "frames",
                 self.frames,
                 "use 2, the paper's pair, to 32",
+            )
+            .that(
+                (1..=50).contains(&self.spacing),
+                "spacing",
+                self.spacing,
+                "use 1, successive states, to 50 steps of 20 ms",
             )
             .that(
                 self.command_blur

@@ -205,10 +205,10 @@ impl Learning {
         expert.resize(count * width, 0.0);
         experts(expert);
         Fault::unless_finite(expert, |i| format!("expert window {}", i / width))?;
-        if config.frames > 2 {
+        if (config.frames, config.spacing) != (2, 1) {
             for window in expert.chunks_exact_mut(width) {
                 let row = core.generator.random_range(0..batch.rows());
-                repeat_oldest(&mut window[..cut.states()], past.real(row, config.frames));
+                repeat_oldest(&mut window[..cut.states()], past.real(row, &cut));
             }
         }
         policy.clear();

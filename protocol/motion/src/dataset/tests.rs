@@ -49,12 +49,12 @@ fn a_window_tells_the_command_that_it_obeys() {
     let mut window = [0.0; 2 * FEATURES];
     let walk = Dataset::of(vec![gait::walk(0.8).expect("a gait")]);
     let asked = walk.clips()[0].command;
-    assert_eq!(walk.sample_window(&mut rng, &mut window), asked);
+    assert_eq!(walk.sample_window(&mut rng, 1, &mut window), asked);
     // A robot that sets off is not there yet: its speed as of now, between none and the last.
     let start = Dataset::of(vec![gait::start(0.8).expect("a gait")]);
     let speeds: Vec<f32> = (0..300)
         .map(|_| {
-            let [forward, ..] = start.sample_window(&mut rng, &mut window);
+            let [forward, ..] = start.sample_window(&mut rng, 1, &mut window);
             assert!((forward - (window[1] + window[FEATURES + 1]) / 2.0).abs() < 1e-6);
             forward
         })
@@ -72,7 +72,7 @@ fn transitions_join_successive_frames_and_wrap_only_in_cycles() {
     let mut rng = Pcg64Mcg::seed_from_u64(7);
     let (mut out, mut seen) = ([0.0; 2 * FEATURES], Vec::new());
     for _ in 0..200 {
-        data.sample_window(&mut rng, &mut out);
+        data.sample_window(&mut rng, 1, &mut out);
         seen.push((out[0] as i32, out[FEATURES] as i32));
     }
     seen.sort_unstable();
@@ -82,7 +82,7 @@ fn transitions_join_successive_frames_and_wrap_only_in_cycles() {
     // Four steps: back beyond the beginning, where only a cycle goes on.
     let (mut out, mut seen) = ([0.0; 4 * FEATURES], Vec::new());
     for _ in 0..200 {
-        data.sample_window(&mut rng, &mut out);
+        data.sample_window(&mut rng, 1, &mut out);
         seen.push([0, 1, 2, 3].map(|step| out[step * FEATURES] as i32));
     }
     seen.sort_unstable();
@@ -94,6 +94,17 @@ fn transitions_join_successive_frames_and_wrap_only_in_cycles() {
         [10, 10, 10, 11],
         [10, 10, 11, 12],
     ];
+    assert_eq!(seen, expected);
+
+    // Three states, each the second after the one before.
+    let (mut out, mut seen) = ([0.0; 3 * FEATURES], Vec::new());
+    for _ in 0..200 {
+        data.sample_window(&mut rng, 2, &mut out);
+        seen.push([0, 1, 2].map(|step| out[step * FEATURES] as i32));
+    }
+    seen.sort_unstable();
+    seen.dedup();
+    let expected = [[0, 2, 1], [1, 0, 2], [2, 1, 0], [10, 10, 11], [10, 10, 12]];
     assert_eq!(seen, expected);
 }
 
@@ -183,7 +194,7 @@ fn the_same_seed_draws_the_same() {
         let mut out = [0.0; 2 * FEATURES];
         (0..10)
             .map(|_| {
-                data.sample_window(&mut rng, &mut out);
+                data.sample_window(&mut rng, 1, &mut out);
                 out
             })
             .collect::<Vec<_>>()
