@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use motion::{Dataset, MotionConfig};
 use protocol::RolloutLayout;
 use run::{FleetConfig, Folder, RunConfig};
-use sim::{RandomizationConfig, Starts, TaskConfig};
+use sim::{Physics, RandomizationConfig, Starts, TaskConfig};
 use tracing::warn;
 
 /// The sections that an actor needs, read and checked.
@@ -15,6 +15,8 @@ pub struct ActorConfig {
     pub seed: u64,
     /// Size of this actor's rollouts.
     pub layout: RolloutLayout,
+    /// Which engine moves the robots.
+    pub physics: Physics,
     /// Commands, rewards, ends of episodes.
     pub task: TaskConfig,
     /// Table I.
@@ -31,9 +33,9 @@ impl ActorConfig {
     /// Reads the run's configuration and generates or loads its clips.
     pub fn read(folder: &Folder) -> Result<Self> {
         let config = folder.config()?;
-        let run: RunConfig = config.checked("run", RunConfig::validate)?;
-        let fleet: FleetConfig = config.checked("fleet", FleetConfig::validate)?;
-        let motion: MotionConfig = config.section("motion")?;
+        let run: RunConfig = config.section()?;
+        let fleet: FleetConfig = config.section()?;
+        let motion: MotionConfig = config.section()?;
         let dataset =
             Dataset::load(&motion, folder.path()).context("loading the reference motion")?;
         // Files may come and go while the group runs; a process that restarts then must not learn from others in silence.
@@ -49,8 +51,9 @@ impl ActorConfig {
                 environments: fleet.environments_per_actor(),
                 steps: fleet.steps,
             },
-            task: config.checked("task", TaskConfig::validate)?,
-            randomization: config.checked("randomization", RandomizationConfig::validate)?,
+            physics: fleet.physics,
+            task: config.section()?,
+            randomization: config.section()?,
             starts: dataset
                 .frames()
                 .map(|(state, command, weight)| (*state, command, weight))

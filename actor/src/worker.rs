@@ -46,6 +46,7 @@ impl Worker {
     ) -> Result<Self> {
         let seed = mix(mix(config.seed, u64::from(index) + 1), header.version);
         let fleet = Fleet::new(
+            config.physics,
             &config.task.at(header.samples as f64),
             &config.randomization.at(header.samples as f64),
             config.starts.clone(),
@@ -208,7 +209,7 @@ mod tests {
     use std::time::Duration;
 
     use protocol::RolloutLayout;
-    use sim::{RandomizationConfig, StartConfig, Starts, TaskConfig};
+    use sim::{Physics, RandomizationConfig, StartConfig, Starts, TaskConfig};
     use vocabulary::Ramp;
 
     use super::*;
@@ -247,6 +248,7 @@ mod tests {
                 environments: 1,
                 steps: 8,
             },
+            physics: Physics::Rapier,
             task: TaskConfig {
                 start: StartConfig {
                     reference_share: Ramp::moving(1.0, 0.5, [1e3, 3e3]),
@@ -256,7 +258,7 @@ mod tests {
             },
             randomization: RandomizationConfig {
                 strength: Ramp::moving(0.0, 1.0, [1e3, 3e3]),
-                ..RandomizationConfig::default()
+                ..RandomizationConfig::table_one()
             },
             starts: Starts::default(),
             send_patience: Duration::ZERO,
@@ -296,7 +298,8 @@ mod tests {
                     Ramp::Constant(0.75)
                 );
                 // Half of Table I's 0.5 kg.
-                assert_eq!(worker.fleet.randomization().mass_range, [-0.25, 0.25]);
+                let mass = worker.fleet.randomization().mass_variation;
+                assert_eq!(mass.map(|row| row.range), Some([-0.25, 0.25]));
             }
         }
     }

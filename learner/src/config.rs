@@ -31,7 +31,7 @@ pub(crate) struct LearnerConfig {
 impl LearnerConfig {
     pub(crate) fn read(folder: &Folder) -> Result<Self> {
         let config = folder.config()?;
-        let motion: MotionConfig = config.section("motion")?;
+        let motion: MotionConfig = config.section()?;
         let experts =
             Dataset::load(&motion, folder.path()).context("loading the reference motion")?;
         // Files may come and go while the group runs; a process that restarts then must not learn from others in silence.
@@ -42,15 +42,15 @@ impl LearnerConfig {
             );
         }
         Ok(Self {
-            run: config.checked("run", RunConfig::validate)?,
-            fleet: config.checked("fleet", FleetConfig::validate)?,
+            run: config.section()?,
+            fleet: config.section()?,
             learning: LearningConfig {
-                policy: config.section("policy")?,
-                exploration: config.section("exploration")?,
-                ppo: config.section("ppo")?,
-                discriminator: config.section("discriminator")?,
+                policy: config.section()?,
+                exploration: config.section()?,
+                ppo: config.section()?,
+                discriminator: config.section()?,
             },
-            schedule: config.section("scheduler")?,
+            schedule: config.section()?,
             experts,
             episode_steps: config
                 .given("task.termination.time_out.steps")

@@ -141,7 +141,7 @@ impl State {
     /// The optimizer's rate came with a checkpoint; where this configuration asks for another than that one's did, it gets it.
     fn retune(&mut self, checkpoint: &Checkpoint) -> Result<()> {
         if let Some(config) = checkpoint.config()? {
-            let before: PpoConfig = config.section("ppo")?;
+            let before: PpoConfig = config.section()?;
             self.learning.retune(&before);
         }
         Ok(())

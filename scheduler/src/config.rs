@@ -4,9 +4,8 @@ use ampco::ScheduleConfig;
 use anyhow::{Context, Result};
 use run::Folder;
 
-/// Reads and checks the section.
+/// Reads the section.
 pub(crate) fn read(folder: &Folder) -> Result<ScheduleConfig> {
     let config = folder.config().context("reading the run's configuration")?;
-    let section = config.checked("scheduler", ScheduleConfig::validate);
-    section.context("reading the section [scheduler]")
+    config.section().context("reading the section [scheduler]")
 }

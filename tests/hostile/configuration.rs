@@ -6,10 +6,8 @@ use motion::MotionConfig;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use run::{Config, ConfigError, FleetConfig, RunConfig};
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 use sim::{RandomizationConfig, TaskConfig};
-use vocabulary::Checked;
+use vocabulary::Section;
 
 use crate::damage::{blows, damaged};
 use crate::{always, assert_clear};
@@ -17,16 +15,16 @@ use crate::{always, assert_clear};
 /// A file with every value of every section, as `ampco train` writes it.
 fn whole() -> String {
     let mut config = Config::default();
-    config.resolve("run", &RunConfig::default());
-    config.resolve("fleet", &FleetConfig::default());
-    config.resolve("task", &TaskConfig::default());
-    config.resolve("randomization", &RandomizationConfig::default());
-    config.resolve("motion", &MotionConfig::default());
-    config.resolve("policy", &PolicyConfig::default());
-    config.resolve("exploration", &ExplorationConfig::default());
-    config.resolve("ppo", &PpoConfig::default());
-    config.resolve("discriminator", &DiscriminatorConfig::default());
-    config.resolve("scheduler", &ScheduleConfig::default());
+    config.resolve(&RunConfig::default());
+    config.resolve(&FleetConfig::default());
+    config.resolve(&TaskConfig::default());
+    config.resolve(&RandomizationConfig::default());
+    config.resolve(&MotionConfig::default());
+    config.resolve(&PolicyConfig::default());
+    config.resolve(&ExplorationConfig::default());
+    config.resolve(&PpoConfig::default());
+    config.resolve(&DiscriminatorConfig::default());
+    config.resolve(&ScheduleConfig::default());
     config.to_toml()
 }
 
@@ -34,17 +32,10 @@ fn whole() -> String {
 #[expect(clippy::result_large_err, reason = "one error per input, at most")]
 fn read(config: &Config) -> Result<(), ConfigError> {
     #[expect(clippy::result_large_err, reason = "as above")]
-    fn section<T>(
-        config: &Config,
-        name: &str,
-        validate: fn(&T) -> Checked,
-    ) -> Result<(), ConfigError>
-    where
-        T: DeserializeOwned + Default + Serialize,
-    {
-        let section = config.checked(name, validate)?;
+    fn section<T: Section>(config: &Config) -> Result<(), ConfigError> {
+        let section: T = config.section()?;
         // What was accepted can be written out again.
-        config.clone().resolve(name, &section);
+        config.clone().resolve(&section);
         Ok(())
     }
     config.check_sections(&[
@@ -59,16 +50,16 @@ fn read(config: &Config) -> Result<(), ConfigError> {
         "discriminator",
         "scheduler",
     ])?;
-    section(config, "run", RunConfig::validate)?;
-    section(config, "fleet", FleetConfig::validate)?;
-    section(config, "task", TaskConfig::validate)?;
-    section(config, "randomization", RandomizationConfig::validate)?;
-    section(config, "motion", MotionConfig::validate)?;
-    section(config, "policy", PolicyConfig::validate)?;
-    section(config, "exploration", ExplorationConfig::validate)?;
-    section(config, "ppo", PpoConfig::validate)?;
-    section(config, "discriminator", DiscriminatorConfig::validate)?;
-    section(config, "scheduler", ScheduleConfig::validate)
+    section::<RunConfig>(config)?;
+    section::<FleetConfig>(config)?;
+    section::<TaskConfig>(config)?;
+    section::<RandomizationConfig>(config)?;
+    section::<MotionConfig>(config)?;
+    section::<PolicyConfig>(config)?;
+    section::<ExplorationConfig>(config)?;
+    section::<PpoConfig>(config)?;
+    section::<DiscriminatorConfig>(config)?;
+    section::<ScheduleConfig>(config)
 }
 
 fn read_text(text: &str) {

@@ -92,12 +92,9 @@ fn a_damaged_fleet_is_refused_or_restored() {
     let dataset = Dataset::load(&MotionConfig::default(), ".".as_ref()).unwrap();
     let starts: Starts = dataset.frames().map(|(s, c, w)| (*s, c, w)).collect();
     for physics in [Physics::Rapier, Physics::Batched] {
-        let task = TaskConfig {
-            physics,
-            ..TaskConfig::default()
-        };
-        let randomization = RandomizationConfig::default();
-        let fleet = Fleet::new(&task, &randomization, starts.clone(), 1, 1).unwrap();
+        let task = TaskConfig::default();
+        let randomization = RandomizationConfig::table_one();
+        let fleet = Fleet::new(physics, &task, &randomization, starts.clone(), 1, 1).unwrap();
         let sound = fleet.save();
         let fleet = std::cell::RefCell::new(fleet);
         always(100, &blows(), |blows| {

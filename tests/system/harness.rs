@@ -10,6 +10,7 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use run::config::{Source, lay};
 use rustix::process::{Pid, Signal, kill_process, kill_process_group};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -92,8 +93,14 @@ impl Alone {
     pub(crate) fn new(actors: i64) -> Self {
         let runs = Runs::new();
         let folder = run::Folder::create(runs.path(), "alone").expect("a folder");
-        let preset = repository().join("deploy/presets/smoke.toml");
-        let mut config = run::Config::read(&preset).expect("the smoke preset");
+        let presets = repository().join("deploy/presets");
+        let open = |name: &str| {
+            let source = Source::read(&presets.join(format!("{name}.toml")));
+            source.map_err(|error| error.to_string())
+        };
+        let mut config = run::Config::default();
+        let smoke = open("smoke").expect("the smoke preset");
+        lay(&mut config, smoke, |on, _| open(on)).expect("all that it lies on");
         config.put("fleet.actors", actors, "the test");
         config.put("run.iterations", 0, "the test");
         // `ampco train` writes every value out; this one a learner reads without its section's owner.

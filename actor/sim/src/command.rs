@@ -6,11 +6,12 @@
 use crate::kind::{Kind, KindsConfig};
 use crate::time::CONTROL_STEP;
 use rand::{Rng, RngExt};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, Ramp, invalid};
 
 /// Which velocities are commanded.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct CommandConfig {
     /// Forward velocity, m/s: least and greatest. Default 0.4 to 1.2; the paper gives no ranges. With a range that
@@ -30,7 +31,7 @@ pub struct CommandConfig {
     /// for all.
     #[serde(skip_serializing_if = "is_zero")]
     pub least_share: f32,
-    /// Seconds between new commands, drawn uniformly. Default 3 to 10, the span in use among
+    /// Time between new commands, s, drawn uniformly. Default 3 to 10, the span in use among
     /// published trainers.
     pub resample_seconds: [f32; 2],
     /// Share of starts from reference motion whose command is that motion's own velocity.

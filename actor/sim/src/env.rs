@@ -139,10 +139,11 @@ impl Environment {
         }
         if count_down(&mut self.push_in) {
             let table = &setting.table(index).rows;
-            let push = table.draw_push(&mut self.random);
-            bodies.push(index, push);
-            if let Some(rule) = &setting.task.termination.stray {
-                self.astray.pushed(rule);
+            if let Some(push) = table.draw_push(&mut self.random) {
+                bodies.push(index, push);
+                if let Some(rule) = &setting.task.termination.stray {
+                    self.astray.pushed(rule);
+                }
             }
             self.push_in = table.draw_push_interval(&mut self.random);
         }

@@ -28,7 +28,7 @@ pub enum SimError {
     },
     /// The snapshot is of the other physics engine, or of a program that kept more or less of each robot.
     #[error(
-        "the snapshot is not of this fleet's physics, {expected:?}, as this program has it; continue it with the task.physics and the program that it began with"
+        "the snapshot is not of this fleet's physics, {expected:?}, as this program has it; continue it with the fleet.physics and the program that it began with"
     )]
     Engine {
         /// Engine of this fleet.

@@ -11,7 +11,7 @@ pub use out::StepOut;
 use crate::actuator::Gains;
 use crate::env::{Environment, Setting};
 use crate::error::SimError;
-use crate::physics::{Bodies, Exertion};
+use crate::physics::{Bodies, Exertion, Physics};
 use crate::randomization::{RandomizationConfig, Table};
 use crate::start::Pools;
 use crate::start::Starts;
@@ -19,12 +19,13 @@ use crate::task::TaskConfig;
 use crate::terms::Sums;
 use g1::{ACTION, FEATURES, OBSERVATION, RobotState, observation};
 use nalgebra::Vector3;
-use vocabulary::{Cause, RUNNING};
+use vocabulary::{Cause, RUNNING, Section};
 
 /// Environments stepped together. Same seed, same bits: an environment's future depends on the
 /// seed, its index and its actions only.
 pub struct Fleet {
     setting: Setting,
+    physics: Physics,
     bodies: Bodies,
     environments: Vec<Environment>,
     /// Whether the action of this step could be used.
@@ -62,6 +63,7 @@ pub struct LastStep {
 impl Fleet {
     /// Environments at the start of their first episodes.
     pub fn new(
+        physics: Physics,
         task: &TaskConfig,
         randomization: &RandomizationConfig,
         starts: Starts,
@@ -69,6 +71,7 @@ impl Fleet {
         seed: u64,
     ) -> Result<Self, SimError> {
         Self::with_gains(
+            physics,
             task,
             randomization,
             starts,
@@ -80,6 +83,7 @@ impl Fleet {
 
     /// With motors of other gains than the robot's.
     pub fn with_gains(
+        physics: Physics,
         task: &TaskConfig,
         randomization: &RandomizationConfig,
         starts: Starts,
@@ -99,17 +103,18 @@ impl Fleet {
         let setting = Setting {
             task: task.clone(),
             table: Table::of(randomization.clone()),
-            plain: Table::of(RandomizationConfig::none()),
+            plain: Table::of(RandomizationConfig::default()),
             pools: Pools::of(&starts),
             starts,
             robots: environments,
         };
-        let mut bodies = Bodies::new(task.physics, &gains, environments);
+        let mut bodies = Bodies::new(physics, &gains, environments);
         let mut fleet = Self {
             environments: (0..environments)
                 .map(|index| Environment::new(&setting, &mut bodies, seed, index))
                 .collect(),
             setting,
+            physics,
             bodies,
             acted: vec![true; environments],
             observations: vec![0.0; environments * OBSERVATION],
@@ -165,13 +170,10 @@ impl Fleet {
         &self.setting.table.rows
     }
 
-    /// Goes on with another task of the same physics: its rewards and ends count from the next step,
-    /// its commands and starts whenever they are drawn next.
+    /// Goes on with another task: its rewards and ends count from the next step, its commands and starts whenever they
+    /// are drawn next.
     pub fn set_task(&mut self, task: TaskConfig) {
-        self.setting.task = TaskConfig {
-            physics: self.setting.task.physics,
-            ..task
-        };
+        self.setting.task = task;
     }
 
     /// Goes on with other ranges of Table I: noise and pushes from the next step, robots and floors from

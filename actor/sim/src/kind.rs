@@ -5,6 +5,7 @@
 //! kinds of command, drawn as often, the one that is learnt already gets five times the samples of
 //! the other, and the other is not learnt. A robot that keeps to one kind spends all its steps on it.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, Ramp, invalid};
 
@@ -51,7 +52,7 @@ impl Kind {
 
 /// Relative numbers of robots that keep to a kind: their episodes begin with a command of it and, from
 /// reference motion, in motion of it. Commands that change inside an episode may be of any kind.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct KindsConfig {
     /// Stand still.

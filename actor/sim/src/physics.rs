@@ -15,17 +15,7 @@ use serde::{Deserialize, Serialize};
 use worlds::Worlds;
 
 pub use crate::world::Exertion;
-
-/// Which engine moves the robots.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Physics {
-    /// rapier: a world per robot. The judge of every result.
-    #[default]
-    Rapier,
-    /// The solver for this one robot that steps sixteen per instruction.
-    Batched,
-}
+pub use vocabulary::Physics;
 
 /// The robots of a fleet in their engine.
 pub(crate) enum Bodies {

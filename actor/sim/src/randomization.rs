@@ -1,4 +1,4 @@
-//! Domain randomisation: Table I, a row per pair of fields, each with its own switch.
+//! Domain randomisation: Table I as named rows, each with its range. A row that is not listed does not exist.
 //!
 //! Separate so that the table can be read here and nowhere else. Three rows change the robot or the
 //! floor for an episode ([`Variation`]), one pushes it, five blur what the policy observes; reward,
@@ -11,13 +11,16 @@ use crate::model::Variation;
 use nalgebra::Vector3;
 use noise::SensorNoise;
 use rand::{Rng, RngExt};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use vocabulary::invalid::{self, range};
-use vocabulary::{Checked, Ramp};
+use vocabulary::invalid::{self, range, within};
+use vocabulary::{Checked, Ramp, Section};
 
-/// The `[randomization]` section. Ranges are those of Table I; all rows are on, as in the paper.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// `[randomization]`: rows of Table I. Without any, the default, every robot is that of the robot's tables, its sensors are
+/// exact, and nobody pushes it; the paper's preset lists all nine.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[schemars(extend("terms" = true))]
 pub struct RandomizationConfig {
     /// How much the table counts: its ranges lie so much of the way between nothing (friction: 1) and themselves. Default
     /// 1, from the start. Robots that cannot walk yet learn slower on one that is never the same: a ramp from 0 waits.
@@ -25,47 +28,59 @@ pub struct RandomizationConfig {
     /// Share of robots that the table leaves alone. Default 0. Where noise is all that a policy has met,
     /// it may stand still without: the noise had set it going.
     pub plain_share: f32,
-    /// Vary the torso's mass each episode.
-    pub mass_variation: bool,
-    /// Added mass, kg.
-    pub mass_range: [f32; 2],
-    /// Vary the friction between soles and ground each episode; off, it is 1.
-    pub friction: bool,
-    /// Friction coefficient.
-    pub friction_range: [f32; 2],
-    /// Shift the torso's centre of mass each episode.
-    pub com_offset: bool,
-    /// Shift along each axis, m.
-    pub com_range: [f32; 2],
-    /// Push the robot now and then: a jump of its velocity.
-    pub impulse: bool,
-    /// Size of the jump along world x and along world y, m/s; each sign is drawn.
-    pub impulse_range: [f32; 2],
-    /// Seconds between pushes. Default 5 to 10; the paper gives none.
-    pub impulse_seconds: [f32; 2],
-    /// Blur the observed linear velocity.
-    pub linear_velocity_noise: bool,
-    /// Its noise, m/s.
-    pub linear_velocity_range: [f32; 2],
-    /// Blur the observed angular velocity.
-    pub angular_velocity_noise: bool,
-    /// Its noise, rad/s.
-    pub angular_velocity_range: [f32; 2],
-    /// Blur the observed direction of gravity.
-    pub gravity_noise: bool,
-    /// Its noise; Table I says m/s², the observation is a unit vector.
-    pub gravity_range: [f32; 2],
-    /// Blur the observed joint positions.
-    pub joint_position_noise: bool,
-    /// Their noise, rad.
-    pub joint_position_range: [f32; 2],
-    /// Blur the observed joint velocities.
-    pub joint_velocity_noise: bool,
-    /// Their noise, rad/s.
-    pub joint_velocity_range: [f32; 2],
+    /// Mass that is added to the torso in each episode, kg.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mass_variation: Option<Row>,
+    /// Friction coefficient between soles and ground in each episode; without the row it is 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction: Option<Row>,
+    /// Shift of the torso's centre of mass along each axis in each episode, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub com_offset: Option<Row>,
+    /// A push now and then: a jump of the robot's velocity along world x and along world y, m/s; each sign is drawn.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub impulse: Option<Push>,
+    /// Noise of the observed linear velocity, m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub linear_velocity_noise: Option<Row>,
+    /// Noise of the observed angular velocity, rad/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angular_velocity_noise: Option<Row>,
+    /// Noise of the observed direction of gravity; Table I says m/s², the observation is a unit vector.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gravity_noise: Option<Row>,
+    /// Noise of the observed joint positions, rad.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joint_position_noise: Option<Row>,
+    /// Noise of the observed joint velocities, rad/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joint_velocity_noise: Option<Row>,
 }
 
-/// The rows of Table I by the keys that switch them, in the table's order.
+/// A row of Table I.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Row {
+    /// Least and greatest value; every one between them is as likely.
+    pub range: [f32; 2],
+}
+
+/// Pushes, the row of Table I that comes at its own times.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Push {
+    /// Least and greatest size; every one between them is as likely.
+    pub range: [f32; 2],
+    /// Time between pushes, s: least and greatest. Default 5 to 10; the paper gives none.
+    #[serde(default = "push_seconds")]
+    pub seconds: [f32; 2],
+}
+
+fn push_seconds() -> [f32; 2] {
+    [5.0, 10.0]
+}
+
+/// The rows of Table I by their keys, in the table's order.
 pub const ROWS: [&str; 9] = [
     "mass_variation",
     "friction",
@@ -83,85 +98,106 @@ impl Default for RandomizationConfig {
         Self {
             strength: 1.0.into(),
             plain_share: 0.0,
-            mass_variation: true,
-            mass_range: [-0.5, 0.5],
-            friction: true,
-            friction_range: [0.5, 1.0],
-            com_offset: true,
-            com_range: [-0.1, 0.1],
-            impulse: true,
-            impulse_range: [0.0, 0.5],
-            impulse_seconds: [5.0, 10.0],
-            linear_velocity_noise: true,
-            linear_velocity_range: [-0.1, 0.1],
-            angular_velocity_noise: true,
-            angular_velocity_range: [-0.2, 0.2],
-            gravity_noise: true,
-            gravity_range: [-0.05, 0.05],
-            joint_position_noise: true,
-            joint_position_range: [-0.01, 0.01],
-            joint_velocity_noise: true,
-            joint_velocity_range: [-1.5, 1.5],
+            mass_variation: None,
+            friction: None,
+            com_offset: None,
+            impulse: None,
+            linear_velocity_noise: None,
+            angular_velocity_noise: None,
+            gravity_noise: None,
+            joint_position_noise: None,
+            joint_velocity_noise: None,
         }
     }
 }
 
+impl Section for RandomizationConfig {
+    const NAME: &'static str = "randomization";
+
+    fn validate(&self) -> Checked {
+        self.strength.check("strength", invalid::share)?;
+        invalid::share("plain_share", self.plain_share)?;
+        for (name, row) in ROWS.into_iter().zip(self.ranges()) {
+            if let Some(row) = row {
+                within(name, range("range", row))?;
+            }
+        }
+        if let Some(mass) = self.mass_variation {
+            // The torso weighs 7.8 kg and has to keep a positive mass.
+            invalid::at_least("mass_variation.range[0]", mass.range[0], -7.0)?;
+        }
+        if let Some(friction) = self.friction {
+            invalid::at_least("friction.range[0]", friction.range[0], 0.0)?;
+        }
+        if let Some(push) = self.impulse {
+            range("impulse.seconds", push.seconds)?;
+            invalid::at_least("impulse.seconds[0]", push.seconds[0], 0.02)?;
+        }
+        Ok(())
+    }
+}
+
 impl RandomizationConfig {
-    /// Every row off: the robot of the tables, exact sensors, no pushes.
-    pub fn none() -> Self {
+    /// Table I as the paper has it: all rows.
+    pub fn table_one() -> Self {
+        let row = |least, greatest| {
+            Some(Row {
+                range: [least, greatest],
+            })
+        };
         Self {
-            mass_variation: false,
-            friction: false,
-            com_offset: false,
-            impulse: false,
-            linear_velocity_noise: false,
-            angular_velocity_noise: false,
-            gravity_noise: false,
-            joint_position_noise: false,
-            joint_velocity_noise: false,
+            mass_variation: row(-0.5, 0.5),
+            friction: row(0.5, 1.0),
+            com_offset: row(-0.1, 0.1),
+            impulse: Some(Push {
+                range: [0.0, 0.5],
+                seconds: push_seconds(),
+            }),
+            linear_velocity_noise: row(-0.1, 0.1),
+            angular_velocity_noise: row(-0.2, 0.2),
+            gravity_noise: row(-0.05, 0.05),
+            joint_position_noise: row(-0.01, 0.01),
+            joint_velocity_noise: row(-1.5, 1.5),
             ..Self::default()
         }
     }
 
-    /// Only these rows on, by their keys in [`ROWS`]; none where there is no such row.
+    /// These rows of Table I alone, by their keys in [`ROWS`]; none where there is no such row.
     pub fn only<'a>(rows: impl IntoIterator<Item = &'a str>) -> Option<Self> {
-        let mut only = Self::none();
+        let (mut only, all) = (Self::default(), Self::table_one());
         for row in rows {
-            let switch = match row {
-                "mass_variation" => &mut only.mass_variation,
-                "friction" => &mut only.friction,
-                "com_offset" => &mut only.com_offset,
-                "impulse" => &mut only.impulse,
-                "linear_velocity_noise" => &mut only.linear_velocity_noise,
-                "angular_velocity_noise" => &mut only.angular_velocity_noise,
-                "gravity_noise" => &mut only.gravity_noise,
-                "joint_position_noise" => &mut only.joint_position_noise,
-                "joint_velocity_noise" => &mut only.joint_velocity_noise,
+            match row {
+                "mass_variation" => only.mass_variation = all.mass_variation,
+                "friction" => only.friction = all.friction,
+                "com_offset" => only.com_offset = all.com_offset,
+                "impulse" => only.impulse = all.impulse,
+                "linear_velocity_noise" => only.linear_velocity_noise = all.linear_velocity_noise,
+                "angular_velocity_noise" => {
+                    only.angular_velocity_noise = all.angular_velocity_noise;
+                }
+                "gravity_noise" => only.gravity_noise = all.gravity_noise,
+                "joint_position_noise" => only.joint_position_noise = all.joint_position_noise,
+                "joint_velocity_noise" => only.joint_velocity_noise = all.joint_velocity_noise,
                 _ => return None,
-            };
-            *switch = true;
+            }
         }
         Some(only)
     }
 
-    /// Checks every field; names the first bad one, its value and a remedy.
-    pub fn validate(&self) -> Checked {
-        self.strength.check("strength", invalid::share)?;
-        invalid::share("plain_share", self.plain_share)?;
-        range("mass_range", self.mass_range)?;
-        // The torso weighs 7.8 kg and has to keep a positive mass.
-        invalid::at_least("mass_range[0]", self.mass_range[0], -7.0)?;
-        range("friction_range", self.friction_range)?;
-        invalid::at_least("friction_range[0]", self.friction_range[0], 0.0)?;
-        range("com_range", self.com_range)?;
-        range("impulse_range", self.impulse_range)?;
-        range("impulse_seconds", self.impulse_seconds)?;
-        invalid::at_least("impulse_seconds[0]", self.impulse_seconds[0], 0.02)?;
-        range("linear_velocity_range", self.linear_velocity_range)?;
-        range("angular_velocity_range", self.angular_velocity_range)?;
-        range("gravity_range", self.gravity_range)?;
-        range("joint_position_range", self.joint_position_range)?;
-        range("joint_velocity_range", self.joint_velocity_range)
+    /// The range of every row that is listed, in the order of [`ROWS`].
+    fn ranges(&self) -> [Option<[f32; 2]>; ROWS.len()] {
+        let of = |row: Option<Row>| row.map(|row| row.range);
+        [
+            of(self.mass_variation),
+            of(self.friction),
+            of(self.com_offset),
+            self.impulse.map(|push| push.range),
+            of(self.linear_velocity_noise),
+            of(self.angular_velocity_noise),
+            of(self.gravity_noise),
+            of(self.joint_position_noise),
+            of(self.joint_velocity_noise),
+        ]
     }
 
     /// The table after a number of samples that the learner has used, at full strength of its own: with the ranges that
@@ -170,24 +206,32 @@ impl RandomizationConfig {
     pub fn at(&self, samples: f64) -> Self {
         let part = self.strength.at(samples);
         if part == 0.0 {
-            return Self::none();
+            return Self::default();
         }
         let grown = |range: [f32; 2], nothing: f32| {
             // Exact at both ends.
             range.map(|end| nothing * (1.0 - part) + end * part)
         };
+        let row = |row: Option<Row>, nothing| {
+            row.map(|row| Row {
+                range: grown(row.range, nothing),
+            })
+        };
         Self {
             strength: 1.0.into(),
-            mass_range: grown(self.mass_range, 0.0),
-            friction_range: grown(self.friction_range, Variation::NOMINAL.friction),
-            com_range: grown(self.com_range, 0.0),
-            impulse_range: grown(self.impulse_range, 0.0),
-            linear_velocity_range: grown(self.linear_velocity_range, 0.0),
-            angular_velocity_range: grown(self.angular_velocity_range, 0.0),
-            gravity_range: grown(self.gravity_range, 0.0),
-            joint_position_range: grown(self.joint_position_range, 0.0),
-            joint_velocity_range: grown(self.joint_velocity_range, 0.0),
-            ..self.clone()
+            plain_share: self.plain_share,
+            mass_variation: row(self.mass_variation, 0.0),
+            friction: row(self.friction, Variation::NOMINAL.friction),
+            com_offset: row(self.com_offset, 0.0),
+            impulse: self.impulse.map(|push| Push {
+                range: grown(push.range, 0.0),
+                ..push
+            }),
+            linear_velocity_noise: row(self.linear_velocity_noise, 0.0),
+            angular_velocity_noise: row(self.angular_velocity_noise, 0.0),
+            gravity_noise: row(self.gravity_noise, 0.0),
+            joint_position_noise: row(self.joint_position_noise, 0.0),
+            joint_velocity_noise: row(self.joint_velocity_noise, 0.0),
         }
     }
 
@@ -201,36 +245,31 @@ impl RandomizationConfig {
     /// The robot and the floor of a new episode.
     pub fn draw_variation(&self, rng: &mut impl Rng) -> Variation {
         let mut variation = Variation::NOMINAL;
-        if self.mass_variation {
-            variation.torso_mass = uniform(self.mass_range, rng);
+        if let Some(mass) = self.mass_variation {
+            variation.torso_mass = uniform(mass.range, rng);
         }
-        if self.com_offset {
-            variation.torso_com = [(); 3].map(|()| uniform(self.com_range, rng));
+        if let Some(offset) = self.com_offset {
+            variation.torso_com = [(); 3].map(|()| uniform(offset.range, rng));
         }
-        if self.friction {
-            variation.friction = uniform(self.friction_range, rng);
+        if let Some(friction) = self.friction {
+            variation.friction = uniform(friction.range, rng);
         }
         variation
     }
 
-    /// Whether any row changes the robot or the floor.
-    pub fn varies(&self) -> bool {
-        self.mass_variation || self.com_offset || self.friction
-    }
-
-    /// A push: the change of the robot's velocity, world frame, m/s.
-    pub fn draw_push(&self, rng: &mut impl Rng) -> Vector3<f32> {
+    /// A push: the change of the robot's velocity, world frame, m/s; none when there are no pushes.
+    pub fn draw_push(&self, rng: &mut impl Rng) -> Option<Vector3<f32>> {
+        let push = self.impulse?;
         let mut component = || {
-            let size = uniform(self.impulse_range, rng);
+            let size = uniform(push.range, rng);
             if rng.random::<bool>() { size } else { -size }
         };
-        Vector3::new(component(), component(), 0.0)
+        Some(Vector3::new(component(), component(), 0.0))
     }
 
-    /// Control steps until the next push; none when pushes are off.
+    /// Control steps until the next push; none when there are no pushes.
     pub fn draw_push_interval(&self, rng: &mut impl Rng) -> Option<u32> {
-        self.impulse
-            .then(|| command::steps(self.impulse_seconds, rng))
+        self.impulse.map(|push| command::steps(push.seconds, rng))
     }
 }
 

@@ -7,6 +7,7 @@ use crate::command::{CommandConfig, Occasion};
 use crate::kind::Kind;
 use g1::{JOINT_TABLE, RobotState, kinematics};
 use rand::{Rng, RngExt};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, Ramp, invalid};
 
@@ -15,7 +16,7 @@ mod pools;
 pub(crate) use pools::Pools;
 
 /// How starts are drawn.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct StartConfig {
     /// Share of episodes that begin in a frame of reference motion, the rest standing. Default 1,

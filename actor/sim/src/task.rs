@@ -6,14 +6,14 @@
 use crate::command::CommandConfig;
 use crate::gate::{self, GateConfig};
 use crate::moment::Moment;
-use crate::physics::Physics;
 use crate::reward::{self, RewardConfig};
 use crate::start::StartConfig;
 use crate::termination::TerminationConfig;
 use crate::terms::{self, Sums};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use vocabulary::Checked;
 use vocabulary::invalid::within;
+use vocabulary::{Checked, Section};
 
 /// Names of the terms in metrics: rewards, then gates, as [`Sums`] has them.
 pub(crate) const NAMES: [&str; reward::NAMES.len() + gate::NAMES.len()] = {
@@ -34,12 +34,9 @@ const _: () = assert!(NAMES.len() <= terms::MOST, "a message holds no more terms
 
 /// The `[task]` section. Where a [`vocabulary::Ramp`] stands, a value may move with the samples that the learner has
 /// used.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct TaskConfig {
-    /// Which engine moves the robots: `"rapier"` (default; the judge of every result) or
-    /// `"batched"`, the fast solver for this one robot.
-    pub physics: Physics,
     /// What is paid.
     pub reward: RewardConfig,
     /// What is left of it.
@@ -52,9 +49,10 @@ pub struct TaskConfig {
     pub start: StartConfig,
 }
 
-impl TaskConfig {
-    /// Checks every field; names the first bad one, its value and a remedy.
-    pub fn validate(&self) -> Checked {
+impl Section for TaskConfig {
+    const NAME: &'static str = "task";
+
+    fn validate(&self) -> Checked {
         within("reward", self.reward.validate())?;
         self.reward.pays()?;
         within("gate", self.gate.validate())?;
@@ -62,7 +60,9 @@ impl TaskConfig {
         within("command", self.command.validate())?;
         within("start", self.start.validate())
     }
+}
 
+impl TaskConfig {
     /// The task after a number of samples: nothing in it moves any more.
     #[must_use]
     pub fn at(&self, samples: f64) -> Self {

@@ -7,12 +7,13 @@ pub mod time_out;
 use crate::termination::fall::FallConfig;
 use crate::termination::stray::StrayConfig;
 use crate::termination::time_out::TimeOutConfig;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vocabulary::Checked;
 use vocabulary::invalid::within;
 
 /// `[task.termination]`: the rules. A fault, a step whose numbers broke, ends an episode in any case.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct TerminationConfig {
     /// Falling.

@@ -61,8 +61,9 @@ macro_rules! table {
         $( $(#[$doc:meta])* $name:ident: $term:ty = $default:expr; )*
     ) => {
         $(#[$table_doc])*
-        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
         #[serde(deny_unknown_fields, default)]
+        #[schemars(extend("terms" = true))]
         pub struct $table {
             $( $(#[$doc])* #[serde(skip_serializing_if = "Option::is_none")] pub $name: Option<$term>, )*
         }

@@ -8,7 +8,6 @@ use sim::{
 #[test]
 fn every_episode_of_a_robot_begins_with_its_kind() {
     let task = TaskConfig {
-        physics: Physics::Batched,
         termination: TerminationConfig {
             time_out: TimeOutConfig {
                 steps: 3,
@@ -35,7 +34,15 @@ fn every_episode_of_a_robot_begins_with_its_kind() {
     let starts: Starts = [(standing, [0.7, 0.0, 0.0], 1.0), (standing, [0.0; 3], 1.0)]
         .into_iter()
         .collect();
-    let mut fleet = Fleet::new(&task, &RandomizationConfig::none(), starts, 8, 1).unwrap();
+    let mut fleet = Fleet::new(
+        Physics::Batched,
+        &task,
+        &RandomizationConfig::default(),
+        starts,
+        8,
+        1,
+    )
+    .unwrap();
     let mut rows = StepRows::filled(8, 0.0);
     let expected = [
         Kind::Standing,

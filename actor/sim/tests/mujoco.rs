@@ -37,7 +37,6 @@ fn placed(physics: Physics, flight: &Value) -> Fleet {
     let start = robot_state(&flight["state"]);
     let command = numbers(&flight["command"]);
     let task = TaskConfig {
-        physics,
         termination: TerminationConfig {
             fall: FallConfig {
                 height: 0.0,
@@ -62,7 +61,15 @@ fn placed(physics: Physics, flight: &Value) -> Fleet {
         ..TaskConfig::default()
     };
     let starts: Starts = [(start, command, 1.0)].into_iter().collect();
-    let mut fleet = Fleet::new(&task, &RandomizationConfig::none(), starts, 1, 0).unwrap();
+    let mut fleet = Fleet::new(
+        physics,
+        &task,
+        &RandomizationConfig::default(),
+        starts,
+        1,
+        0,
+    )
+    .unwrap();
     fleet.hold_command(0, command);
     fleet
 }

@@ -127,17 +127,15 @@ impl SimBench {
     /// Steps a new fleet for the time asked, with a policy or with random actions drawn beforehand.
     fn measure(&self, mut policy: Option<&mut Policy>) -> Result<Measured> {
         let randomization = if self.plain {
-            RandomizationConfig::none()
-        } else {
             RandomizationConfig::default()
+        } else {
+            RandomizationConfig::table_one()
         };
         let n = self.environments;
         let before = resident_bytes();
         let mut fleet = Fleet::new(
-            &TaskConfig {
-                physics: self.physics.into(),
-                ..TaskConfig::default()
-            },
+            self.physics.into(),
+            &TaskConfig::default(),
             &randomization,
             Starts::default(),
             n,

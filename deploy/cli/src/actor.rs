@@ -64,7 +64,7 @@ async fn stay_with(folder: &Folder) -> Result<ExitStatus> {
 async fn join(folder: &Folder) -> Result<Child> {
     // One at a time: between finding a free index and the actor's taking it, nobody else may look.
     let _turn = turn(folder).await?;
-    let fleet: FleetConfig = folder.config()?.section("fleet")?;
+    let fleet: FleetConfig = folder.config()?.section()?;
     // The first indices are the group's own, also while one of them is being restarted.
     let first = u32::try_from(fleet.actors).context("counting the group's actors")?;
     let (index, free) = folder.lock_free_actor(first)?;

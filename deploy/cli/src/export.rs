@@ -106,7 +106,7 @@ fn files(kept: &Kept) -> Result<Vec<(&'static str, Vec<u8>)>> {
         origin,
         [rate(CONTROL_STEP), rate(PHYSICS_STEP)],
         serde_json::to_value(&kept.task()?)?,
-        serde_json::to_value(RandomizationConfig::default())?,
+        serde_json::to_value(RandomizationConfig::table_one())?,
     );
     let mut text = serde_json::to_vec_pretty(&description)?;
     text.push(b'\n');

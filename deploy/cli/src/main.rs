@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod actor;
+mod config;
 mod export;
 mod play;
 mod plot;
@@ -30,6 +31,7 @@ Examples:
   ampco train --run walk --resume --minutes 20    twenty more, from the last checkpoint
   ampco train --preset amp-0.5 --set seed=7       another method, another seed
   ampco train --set task.reward.track.kernel=2.0  any key of the configuration
+  ampco config agile --diff ampco                 what is another in it, key by key
   ampco stages athlete                            nine runs in a row: every direction, and a run
   ampco status                                    the newest run: how it is going
   ampco actor --run walk                          lend another core to a running group
@@ -58,6 +60,7 @@ struct Arguments {
 enum Command {
     Train(train::Train),
     Stages(stages::Stages),
+    Config(config::Show),
     Actor(actor::AddActor),
     Status(status::Status),
     Evaluate(judge::Evaluate),
@@ -77,6 +80,7 @@ fn main() -> ExitCode {
     let done = match arguments.command {
         Command::Train(train) => train.run(),
         Command::Stages(stages) => stages.run(),
+        Command::Config(config) => config.run(),
         Command::Actor(actor) => actor.run(),
         Command::Status(status) => status.run(),
         Command::Evaluate(evaluate) => evaluate.run(),

@@ -88,9 +88,9 @@ impl Play {
             },
             seconds: self.seconds,
             randomization: if self.randomize {
-                RandomizationConfig::default()
+                RandomizationConfig::table_one()
             } else {
-                RandomizationConfig::none()
+                RandomizationConfig::default()
             },
             from_reference: self.from_reference,
             physics: self.physics.into(),

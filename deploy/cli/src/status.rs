@@ -80,7 +80,7 @@ fn status(folder: &Folder) -> Result<Value> {
 
 /// The same for a reader.
 fn describe(folder: &Folder, status: &Value) -> Result<String> {
-    let run: RunConfig = folder.config()?.section("run")?;
+    let run: RunConfig = folder.config()?.section()?;
     let mut lines = vec![format!(
         "run {} · {} · {}",
         folder.name(),

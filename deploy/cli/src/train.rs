@@ -122,7 +122,7 @@ impl Train {
             if without_critic && config.given("ppo.critic_first").is_none() {
                 config.put("ppo.critic_first", 1e6, &origin);
             }
-            let own: PolicyConfig = config.section("policy")?;
+            let own: PolicyConfig = config.section()?;
             let theirs = &kept.learning.policy;
             if (&own.hidden, &own.critic_hidden) != (&theirs.hidden, &theirs.critic_hidden) {
                 return Err(usage(format!(
@@ -141,7 +141,7 @@ impl Train {
             let path = path.to_str().context("the path of --from is not text")?;
             config.put("run.from", path, &origin);
         }
-        resolve::anchor_files(&mut config, preset.file.as_deref())?;
+        resolve::anchor_files(&mut config)?;
         let resolved = resolve::resolve(&mut config)?;
         let motion = check(&config, &resolved)?;
         let name = match &self.run {
@@ -218,8 +218,10 @@ fn check(config: &Config, resolved: &Resolved) -> Result<Vec<Print>> {
         Dataset::files(&resolved.motion, here)
     });
     // Its causes belong to the line: which row of which file.
-    let files = files
-        .map_err(|error| config.refuse("motion", format!("{:#}", anyhow::Error::from(error))))?;
+    let files = files.map_err(|error| {
+        let path = error.path().to_owned();
+        config.refuse("motion", &path, format!("{:#}", anyhow::Error::from(error)))
+    })?;
     let prints = Print::of_all(&files)?;
     let layout = RolloutLayout {
         environments: resolved.fleet.environments_per_actor(),

@@ -58,7 +58,7 @@ fn planned(study: &StudyFile, cell: &Cell, beside: &Path, origin: &str) -> Resul
     }
     config.put("run.seed", i64::try_from(cell.seed)?, origin);
     config.put("run.minutes", 0.0, origin);
-    resolve::anchor_files(&mut config, preset.file.as_deref())?;
+    resolve::anchor_files(&mut config)?;
     // First for the fleet, whose size turns transitions into iterations.
     let fleet = resolve::resolve(&mut config)?.fleet;
     let rows = (fleet.actors * fleet.environments_per_actor() * fleet.steps) as u64;
@@ -128,7 +128,7 @@ pub(super) fn check_unchanged(planned: &Planned, folder: &StudyFolder) -> Result
 
 /// The target of a run that was made, from its own configuration.
 pub(super) fn target_of(config: &Config) -> Result<u64> {
-    Ok(config.section::<RunConfig>("run")?.iterations)
+    Ok(config.section::<RunConfig>()?.iterations)
 }
 
 /// What would be run, for --dry-run.

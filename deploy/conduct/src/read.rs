@@ -58,7 +58,7 @@ pub(super) fn results(folder: &StudyFolder, to_study: &str) -> Result<Results> {
 /// What a run's folder tells; whether it was judged otherwise than `evaluate` asks, so that it does not count.
 fn fill(run: &mut Run, folder: &Folder, evaluate: Option<&Evaluation>) -> Result<bool> {
     let config = folder.config()?;
-    let fleet: FleetConfig = config.section("fleet")?;
+    let fleet: FleetConfig = config.section()?;
     run.target = target_of(&config)?;
     run.records = metrics::read::<Record>(&folder.metrics_path())?;
     let reached = run.records.last().map_or(0, |record| record.iteration);

@@ -3,7 +3,6 @@
 //! Separate from `train` because this is where every section meets its owner: each is read and
 //! checked strictly before anything is started, so that a mistake costs a second and not an hour.
 
-use std::path::Path;
 use std::thread;
 
 use amp::{DiscriminatorConfig, ExplorationConfig, PolicyConfig, PpoConfig};
@@ -11,25 +10,47 @@ use ampco::ScheduleConfig;
 use anyhow::{Context, Result};
 use motion::MotionConfig;
 use run::{Config, FleetConfig, RunConfig};
-use serde::Serialize;
-use serde::de::DeserializeOwned;
+use schemars::{Schema, SchemaGenerator};
 use sim::{RandomizationConfig, TaskConfig};
-use toml::Value;
-use vocabulary::Checked;
+use vocabulary::Section;
+
+/// A section, whichever it is.
+pub struct Known {
+    /// Its name in a configuration.
+    pub name: &'static str,
+    /// Reads it, checks it, and writes its defaults out.
+    settle: fn(&mut Config) -> Result<()>,
+    /// Its keys, with the doc comments of their fields.
+    pub schema: fn(&mut SchemaGenerator) -> Schema,
+}
 
 /// Every section there is.
-const SECTIONS: [&str; 10] = [
-    "run",
-    "fleet",
-    "task",
-    "randomization",
-    "motion",
-    "policy",
-    "exploration",
-    "ppo",
-    "discriminator",
-    "scheduler",
+pub const SECTIONS: [Known; 10] = [
+    known::<RunConfig>(),
+    known::<FleetConfig>(),
+    known::<TaskConfig>(),
+    known::<RandomizationConfig>(),
+    known::<MotionConfig>(),
+    known::<PolicyConfig>(),
+    known::<ExplorationConfig>(),
+    known::<PpoConfig>(),
+    known::<DiscriminatorConfig>(),
+    known::<ScheduleConfig>(),
 ];
+
+const fn known<T: Section>() -> Known {
+    Known {
+        name: T::NAME,
+        settle: settle::<T>,
+        schema: T::json_schema,
+    }
+}
+
+fn settle<T: Section>(config: &mut Config) -> Result<()> {
+    let section: T = config.section()?;
+    config.resolve(&section);
+    Ok(())
+}
 
 /// What `train` itself needs of a resolved configuration.
 #[derive(Debug)]
@@ -46,48 +67,32 @@ pub struct Resolved {
 
 /// Reads and checks every section, and writes its defaults out into `config`.
 pub fn resolve(config: &mut Config) -> Result<Resolved> {
-    config.check_sections(&SECTIONS)?;
-    let run = settle(config, "run", RunConfig::validate)?;
-    let mut fleet = settle(config, "fleet", FleetConfig::validate)?;
+    settle_all(config)?;
+    let mut fleet: FleetConfig = config.section()?;
     if fleet.actors == 0 {
         fleet.actors = cores().min(fleet.environments).min(protocol::MAX_ACTORS);
-        config.resolve("fleet", &fleet);
+        config.resolve(&fleet);
     }
-    settle(config, "task", TaskConfig::validate)?;
-    settle(config, "randomization", RandomizationConfig::validate)?;
-    let motion = settle(config, "motion", MotionConfig::validate)?;
-    let policy = settle(config, "policy", PolicyConfig::validate)?;
-    settle(config, "exploration", ExplorationConfig::validate)?;
-    settle(config, "ppo", PpoConfig::validate)?;
-    settle(config, "discriminator", DiscriminatorConfig::validate)?;
-    settle(config, "scheduler", ScheduleConfig::validate)?;
     Ok(Resolved {
-        run,
+        run: config.section()?,
         fleet,
-        motion,
-        policy,
+        motion: config.section()?,
+        policy: config.section()?,
     })
 }
 
-/// Makes the files that the configuration names absolute: a preset's start from its own folder,
-/// those of `--set` from the present one. The run's processes start wherever they like.
-pub fn anchor_files(config: &mut Config, preset: Option<&Path>) -> Result<()> {
-    let Some(Value::Array(clips)) = config.given("motion.clips") else {
-        return Ok(());
-    };
-    let mut clips = clips.clone();
-    let origin = config.origin("motion.clips").unwrap_or_default().to_owned();
-    let here = std::env::current_dir().context("finding the present folder")?;
-    let of_preset = preset.filter(|file| origin == file.display().to_string());
-    let folder = of_preset.and_then(Path::parent).unwrap_or(&here);
-    for clip in &mut clips {
-        for key in ["file", "folder"] {
-            if let Some(Value::String(path)) = clip.get_mut(key) {
-                *path = folder.join(&*path).to_string_lossy().into_owned();
-            }
-        }
-    }
-    config.put("motion.clips", clips, &origin);
+/// The same, with what this machine decides left open.
+pub fn settle_all(config: &mut Config) -> Result<()> {
+    config.check_sections(&SECTIONS.map(|section| section.name))?;
+    SECTIONS
+        .iter()
+        .try_for_each(|section| (section.settle)(config))
+}
+
+/// Makes the files absolute that `--set` names: they start from the present folder, and the run's processes start
+/// wherever they like. Those of a preset start from its own folder, and are absolute by now.
+pub fn anchor_files(config: &mut Config) -> Result<()> {
+    config.anchor_files(&std::env::current_dir().context("finding the present folder")?);
     Ok(())
 }
 
@@ -106,16 +111,6 @@ pub fn difference(theirs: &Config, ours: &Config) -> Option<(String, String)> {
             }
         }
     }
-}
-
-/// Reads a section, has it checked, and writes its defaults out.
-fn settle<T>(config: &mut Config, name: &str, validate: fn(&T) -> Checked) -> Result<T>
-where
-    T: DeserializeOwned + Default + Serialize,
-{
-    let section = config.checked(name, validate)?;
-    config.resolve(name, &section);
-    Ok(section)
 }
 
 /// How many actors fit this machine: one a core.
@@ -146,8 +141,9 @@ mod tests {
             assert_eq!(again.to_toml(), text, "{name}");
             for section in SECTIONS {
                 assert!(
-                    text.contains(&format!("[{section}")),
-                    "{name} lacks [{section}]"
+                    text.contains(&format!("[{}", section.name)),
+                    "{name} lacks [{}]",
+                    section.name
                 );
             }
         }
@@ -156,10 +152,11 @@ mod tests {
     #[test]
     fn every_section_is_read_strictly() {
         for section in SECTIONS {
-            let message = complaint(&format!("[{section}]\nno_such_key = 1"));
+            let message = complaint(&format!("[{}]\nno_such_key = 1", section.name));
             assert!(
                 message.starts_with(&format!(
-                    "my.toml: unknown key `no_such_key` in [{section}]"
+                    "my.toml: unknown key `no_such_key` in [{}]",
+                    section.name
                 )),
                 "{message}"
             );
@@ -195,7 +192,11 @@ mod tests {
             ("run", "minutes = -1.0", "minutes"),
             ("fleet", "environments = 0", "environments"),
             ("task", "reward.track.kernel = -1.0", "reward.track.kernel"),
-            ("randomization", "mass_range = [1.0, -1.0]", "mass_range"),
+            (
+                "randomization",
+                "friction = { range = [1.0, -1.0] }",
+                "friction.range",
+            ),
             ("motion", "clips = []", "clips"),
             ("policy", "hidden = []", "hidden"),
             ("exploration", "sigma = 0.0", "sigma"),
@@ -214,22 +215,16 @@ mod tests {
     }
 
     #[test]
-    fn a_presets_files_start_from_its_folder_and_those_of_set_from_here() {
-        let preset = Path::new("/presets/my.toml");
-        let text = "[motion]\nclips = [{ file = \"x.csv\", fps = 60 }, { gait = \"stand\" }]";
-        let mut config = Config::parse(text, "/presets/my.toml").unwrap();
-        anchor_files(&mut config, Some(preset)).unwrap();
-        let clip = |config: &Config| match config.given("motion.clips") {
-            Some(Value::Array(clips)) => clips[0]["file"].as_str().unwrap().to_owned(),
-            other => panic!("{other:?}"),
-        };
-        assert_eq!(clip(&config), "/presets/x.csv");
-
-        config
-            .set("motion.clips=[{ file = \"y.csv\", fps = 60 }]")
-            .unwrap();
-        anchor_files(&mut config, Some(preset)).unwrap();
+    fn files_of_set_start_from_here() {
+        let mut config = Config::default();
+        let clips = "motion.clips=[{ file = \"y.csv\", fps = 60 }, { file = \"/x.csv\" }]";
+        config.set(clips).unwrap();
+        anchor_files(&mut config).unwrap();
+        let clips = config.given("motion.clips").unwrap();
         let here = std::env::current_dir().unwrap().join("y.csv");
-        assert_eq!(clip(&config), here.to_string_lossy());
+        assert_eq!(clips[0]["file"].as_str(), here.to_str());
+        assert_eq!(clips[1]["file"].as_str(), Some("/x.csv"));
+        let origin = config.origin("motion.clips").unwrap();
+        assert!(origin.starts_with("--set motion.clips="), "{origin}");
     }
 }

@@ -160,6 +160,7 @@ impl<'a> Walker<'a> {
         // Robots of one unit differ by their index; units differ by their seed.
         let seed = conditions.seed.wrapping_add((unit.first as u64) << 32);
         Ok(Fleet::new(
+            self.subject.physics,
             &task,
             &randomization,
             starts,

@@ -123,7 +123,7 @@ impl Evaluate {
     pub fn run(&self) -> Result<()> {
         let conditions = self.conditions()?;
         let mut subject = Subject::open(&self.place, &self.run)?;
-        subject.task.physics = self.physics.into();
+        subject.physics = self.physics.into();
         let given = self.judge.as_deref();
         let frozen = given
             .map(|judge| Kept::open(&self.place, judge))

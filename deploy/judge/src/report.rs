@@ -83,7 +83,7 @@ impl Report {
             checkpoint: subject.kept.path.clone(),
             iteration: subject.kept.iteration,
             judge: judge.map(|judge| judge.path.clone()),
-            physics: subject.task.physics,
+            physics: subject.physics,
             seconds: f64::from(conditions.steps) / CONTROL_HZ,
             episodes: conditions.episodes,
             seed: conditions.seed,

@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use amp::{Learning, LearningConfig, PolicyConfig};
+use amp::{Learning, LearningConfig};
 use anyhow::{Context, Result};
 use motion::MotionConfig;
 use policy::{Policy, Shape};
 use run::motion::Learned;
 use run::{Checkpoint, Config, FleetConfig};
-use sim::{Starts, TaskConfig};
+use sim::{Physics, Starts, TaskConfig};
 use terminal::Place;
 use terminal::console::say;
 use terminal::failure::usage;
@@ -35,6 +35,8 @@ pub struct Subject {
     pub kept: Kept,
     /// The task that it is tried by.
     pub task: TaskConfig,
+    /// What moves the robots when it is judged, whatever it was when it learned.
+    pub physics: Physics,
     motion: MotionConfig,
     /// Made when it is first asked for: most who watch a policy never do.
     reference: OnceLock<Reference>,
@@ -67,10 +69,10 @@ impl Kept {
         Ok(Self {
             iteration: checkpoint.iteration,
             learning: LearningConfig {
-                policy: config.checked("policy", PolicyConfig::validate)?,
-                exploration: config.section("exploration")?,
-                ppo: config.section("ppo")?,
-                discriminator: config.section("discriminator")?,
+                policy: config.section()?,
+                exploration: config.section()?,
+                ppo: config.section()?,
+                discriminator: config.section()?,
             },
             config,
             checkpoint,
@@ -99,7 +101,7 @@ impl Kept {
 
     /// The task that it was trained for, as its ramps had it when this checkpoint was written.
     pub fn task(&self) -> Result<TaskConfig> {
-        let task: TaskConfig = self.config.checked("task", TaskConfig::validate)?;
+        let task: TaskConfig = self.config.section()?;
         let (first, last) = (task.at(0.0), task.at(f64::MAX));
         // Where nothing moves nobody has to count.
         if first == last {
@@ -119,7 +121,7 @@ impl Kept {
                 .with_context(|| format!("loading learning.bin of {}", self.path.display()))?;
             return Ok(learning.samples() as f64);
         }
-        let fleet: FleetConfig = self.config.checked("fleet", FleetConfig::validate)?;
+        let fleet: FleetConfig = self.config.section()?;
         Ok(self.iteration as f64 * fleet.environments as f64 * fleet.steps as f64)
     }
 
@@ -158,9 +160,10 @@ impl Subject {
     /// Opens what `name` means, as [`Kept::open`] does.
     pub fn open(place: &Place, name: &str) -> Result<Self> {
         let kept = Kept::open(place, name)?;
-        let motion: MotionConfig = kept.config.section("motion")?;
+        let motion: MotionConfig = kept.config.section()?;
         Ok(Self {
             task: kept.task()?,
+            physics: Physics::default(),
             motion,
             reference: OnceLock::new(),
             kept,

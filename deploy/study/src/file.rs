@@ -192,14 +192,14 @@ mod tests {
     use super::*;
 
     const GOOD: &str = "title = 'a study'\nmethods = ['ampco', 'amp-0.5']\nseeds = [1, 2]\nsamples = 1000\n\
-                        [override.task]\nphysics = 'batched'\n";
+                        [override.fleet]\nphysics = 'batched'\n";
 
     #[test]
     fn a_file_comes_back_as_it_was() {
         let file = StudyFile::parse(GOOD).unwrap();
         assert_eq!(file.budget(), Budget::Samples(1000));
         assert_eq!(file.parallel, 1);
-        assert_eq!(file.overrides["task"]["physics"].as_str(), Some("batched"));
+        assert_eq!(file.overrides["fleet"]["physics"].as_str(), Some("batched"));
         assert_eq!(StudyFile::parse(&file.to_toml()).unwrap(), file);
     }
 

@@ -199,7 +199,7 @@ mod tests {
         assert_eq!(together(&all, &all), all);
         // Through JSON and back, a sweep's values included.
         let swept = "methods = []\nseeds = [1]\n[sweep]\npreset = 'ampco'\n[sweep.values]\n\
-                     'scheduler.alpha' = [0.9, 1.0]\n'scheduler.window' = [4]\n'task.physics' = ['batched']";
+                     'scheduler.alpha' = [0.9, 1.0]\n'scheduler.window' = [4]\n'fleet.physics' = ['batched']";
         let swept = cells(swept);
         let json = serde_json::to_string(&swept).unwrap();
         assert_eq!(serde_json::from_str::<Vec<Cell>>(&json).unwrap(), swept);

@@ -12,7 +12,7 @@ pub use policy::{ExplorationConfig, ExplorationKind, PolicyConfig};
 pub use ppo::{AdvantageNormalization, PpoConfig, RateSchedule};
 
 use std::fmt::Debug;
-use vocabulary::{Invalid, Ramp};
+use vocabulary::{Invalid, Ramp, Section};
 
 /// All sections of the learner.
 #[derive(Clone, Debug, Default, PartialEq)]

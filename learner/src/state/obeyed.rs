@@ -84,10 +84,10 @@ const CASES: &[(&str, &str, &str)] = &[
 
 fn sections(config: &Config) -> LearningConfig {
     LearningConfig {
-        policy: config.section("policy").unwrap(),
-        exploration: config.section("exploration").unwrap(),
-        ppo: config.section("ppo").unwrap(),
-        discriminator: config.section("discriminator").unwrap(),
+        policy: config.section().unwrap(),
+        exploration: config.section().unwrap(),
+        ppo: config.section().unwrap(),
+        discriminator: config.section().unwrap(),
     }
 }
 
@@ -170,10 +170,10 @@ fn every_key_that_may_change_is_among_them() {
     config.set("ppo.value_clip=0.2").unwrap();
     let given = config.clone();
     let sections = sections(&Config::parse(BASE, "a test").unwrap());
-    config.resolve("policy", &sections.policy);
-    config.resolve("exploration", &sections.exploration);
-    config.resolve("ppo", &sections.ppo);
-    config.resolve("discriminator", &sections.discriminator);
+    config.resolve(&sections.policy);
+    config.resolve(&sections.exploration);
+    config.resolve(&sections.ppo);
+    config.resolve(&sections.discriminator);
     // Every default, and what is given beside them.
     config.merge(given);
     let leaves = config.leaves();

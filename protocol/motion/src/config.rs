@@ -4,12 +4,13 @@
 
 mod gaits;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-use vocabulary::{Checked, Invalid};
+use vocabulary::{Checked, Invalid, Section};
 
 /// Reference motion.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MotionConfig {
     /// The clips. Default: walking at five speeds from 0.4 to 1.2 m/s, the one of a comfortable
@@ -23,7 +24,7 @@ pub struct MotionConfig {
 }
 
 /// One clip or a folder of them: a built-in gait, a file or a folder, never two of these.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ClipConfig {
     /// A built-in gait.
@@ -62,7 +63,7 @@ pub struct ClipConfig {
 }
 
 /// The built-in gaits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Gait {
     /// Standing still.
@@ -78,7 +79,7 @@ pub enum Gait {
 }
 
 /// Order of the numbers of a quaternion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum QuaternionOrder {
     /// w x y z.
@@ -148,12 +149,10 @@ impl Default for ClipConfig {
     }
 }
 
-impl MotionConfig {
-    /// Whether every clip is said completely and within range.
-    ///
-    /// # Errors
-    /// The first field that is not, its value and the remedy.
-    pub fn validate(&self) -> Checked {
+impl Section for MotionConfig {
+    const NAME: &'static str = "motion";
+
+    fn validate(&self) -> Checked {
         if self.clips.is_empty() {
             let remedy = "name at least one clip, for example { gait = \"walk\", speed = 0.8 }";
             return Err(wrong("clips".into(), "[]", remedy));

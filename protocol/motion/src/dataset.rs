@@ -16,6 +16,7 @@ use g1::{FEATURES, RobotState};
 use rand::{Rng, RngExt};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use vocabulary::Section;
 
 /// Which features are velocity forward and aside, m/s, and yaw rate, rad/s.
 const VELOCITY: [usize; 3] = [

@@ -61,6 +61,18 @@ pub enum MotionError {
     },
 }
 
+impl MotionError {
+    /// What in the `[motion]` section is to blame.
+    pub fn path(&self) -> &str {
+        match self {
+            Self::Config(invalid) => &invalid.path,
+            Self::Read { .. } | Self::Cell { .. } | Self::Frame { .. } | Self::File { .. } => {
+                "clips"
+            }
+        }
+    }
+}
+
 fn column_text(column: &Option<usize>) -> String {
     column.map_or_else(String::new, |column| format!(" column {column}"))
 }

@@ -13,10 +13,10 @@ pub(crate) struct Assignment {
 }
 
 /// Keys that are asked for so often that they go without their section.
-const SHORT: [(&str, &str); 1] = [("physics", "task")];
+const SHORT: [(&str, &str); 1] = [("physics", "fleet")];
 
 /// Parses one assignment. A key without a dot is one of `[run]`: `seed=7` means `run.seed=7`; or one
-/// of the few of `SHORT`: `physics=batched` means `task.physics=batched`.
+/// of the few of `SHORT`: `physics=batched` means `fleet.physics=batched`.
 pub(crate) fn parse(text: &str) -> Result<Assignment, String> {
     let Some((key, value)) = text.split_once('=') else {
         return Err("expected key=value, as in ppo.epochs=4".to_owned());

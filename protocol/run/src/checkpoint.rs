@@ -77,7 +77,7 @@ impl Checkpoint {
     pub fn config(&self) -> Result<Option<Config>, ConfigError> {
         if let Some(text) = self.part(CONFIG) {
             let origin = self.path.join(CONFIG).display().to_string();
-            return Config::parse(&String::from_utf8_lossy(text), &origin).map(Some);
+            return Config::parse_written(&String::from_utf8_lossy(text), &origin).map(Some);
         }
         let beside = self.path.join("config.toml");
         let there = beside.is_file();
@@ -206,7 +206,8 @@ impl Checkpoints {
         let score = |at: u64| Manifest::read(&self.path(at)).ok()?.score;
         let task = |at: u64| -> Option<toml::Value> {
             let text = fs::read_to_string(self.path(at).join(CONFIG)).ok()?;
-            Config::parse(&text, CONFIG).ok()?.given("task").cloned()
+            let config = Config::parse_written(&text, CONFIG).ok()?;
+            config.given("task").cloned()
         };
         let scored = self.list().into_iter().rev();
         let scored: Vec<(u64, f64)> = scored.filter_map(|at| Some((at, score(at)?))).collect();

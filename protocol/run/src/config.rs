@@ -8,20 +8,21 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::Path;
 
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 use toml::{Table, Value};
-use vocabulary::Checked;
+use vocabulary::Section;
 
 use crate::{assignment, nearest, replace};
 
 mod complaint;
 mod error;
+mod layers;
 mod moved;
+mod older;
 mod tables;
 
 use complaint::{misspelt_path, quoted_names};
 pub use error::ConfigError;
+pub use layers::{Source, lay};
 pub use moved::moved;
 use tables::{collect, mark, merge_tables};
 
@@ -36,36 +37,42 @@ pub struct Config {
 impl Config {
     /// Parses TOML; `origin` is how errors name it ("preset smoke", a path).
     pub fn parse(text: &str, origin: &str) -> Result<Self, ConfigError> {
-        let table: Table = toml::from_str(text).map_err(|error| ConfigError::Syntax {
-            origin: origin.to_owned(),
-            message: wording::refusal(text, error.span(), error.message()),
-        })?;
-        let mut config = Self {
-            table,
-            origins: BTreeMap::new(),
-        };
-        mark(&config.table, "", origin, &mut config.origins);
-        Ok(config)
+        Ok(Self::of(table(text, origin)?, origin))
     }
 
-    /// Reads a TOML file.
+    /// Parses what a program has written for a run; of an older program, in today's words.
+    pub fn parse_written(text: &str, origin: &str) -> Result<Self, ConfigError> {
+        let mut table = table(text, origin)?;
+        older::in_todays_words(&mut table);
+        Ok(Self::of(table, origin))
+    }
+
+    /// Reads the file of a run, which a program has written, as [`Config::parse_written`] does. Presets are read by [`lay`].
     pub fn read(path: &Path) -> Result<Self, ConfigError> {
-        let bytes = std::fs::read(path).map_err(|source| ConfigError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
         let origin = path.display().to_string();
-        match wording::text(bytes) {
-            Ok(text) => Self::parse(&text, &origin),
-            Err(foreign) => Err(ConfigError::Syntax {
-                origin,
-                message: foreign.to_string(),
-            }),
-        }
+        Self::parse_written(&layers::text(path)?, &origin)
+    }
+
+    /// A table of sections with one origin.
+    fn of(table: Table, origin: &str) -> Self {
+        let mut origins = BTreeMap::new();
+        mark(&table, "", origin, &mut origins);
+        Self { table, origins }
     }
 
     /// Lays `over` on top: its values win, what it does not mention stays.
     pub fn merge(&mut self, over: Self) {
+        if let (Some(ours), Some(theirs)) = (self.given(METHOD), over.given(METHOD))
+            && other_choice(ours, theirs)
+        {
+            self.remove(METHOD);
+        }
+        // A value in place of a table, or of one with other keys: nothing is left of those below.
+        for (path, value) in over.leaves() {
+            let around = path.match_indices('.').map(|(end, _)| &path[..end]);
+            around.for_each(|path| self.forget(path, false));
+            self.forget(&path, !value.is_table());
+        }
         merge_tables(&mut self.table, over.table);
         self.origins.extend(over.origins);
     }
@@ -98,6 +105,24 @@ impl Config {
         self.remark(path, &value, origin);
     }
 
+    /// Makes the motion files that it names absolute; relative ones start from `folder`.
+    pub fn anchor_files(&mut self, folder: &Path) {
+        const CLIPS: &str = "motion.clips";
+        let Some(Value::Array(clips)) = self.given(CLIPS) else {
+            return;
+        };
+        let (mut clips, origin) = (clips.clone(), self.origin(CLIPS).unwrap_or_default());
+        let origin = origin.to_owned();
+        for clip in &mut clips {
+            for key in ["file", "folder"] {
+                if let Some(Value::String(path)) = clip.get_mut(key) {
+                    *path = folder.join(&*path).to_string_lossy().into_owned();
+                }
+            }
+        }
+        self.put(CLIPS, clips, &origin);
+    }
+
     /// The given value at a dotted path, if any was given.
     pub fn given(&self, path: &str) -> Option<&Value> {
         let mut parts = path.split('.');
@@ -112,8 +137,9 @@ impl Config {
         leaves
     }
 
-    /// Removes the value at a dotted path, if there is one.
+    /// Removes the value or table at a dotted path, if there is one.
     pub fn remove(&mut self, path: &str) {
+        self.forget(path, true);
         let Some((parent, name)) = path.rsplit_once('.') else {
             self.table.remove(path);
             return;
@@ -144,6 +170,18 @@ impl Config {
         }
     }
 
+    /// Where a value was given, or all that is given in a table: each place once; none where nothing was.
+    pub fn origins(&self, path: &str) -> Vec<&str> {
+        let inside = format!("{path}.");
+        let given = self.origins.iter();
+        let below = given.filter(|(given, _)| given.starts_with(&inside));
+        let below = below.map(|(_, origin)| origin.as_str());
+        let mut found: Vec<&str> = self.origin(path).into_iter().chain(below).collect();
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
     /// Refuses a section that is not one of `known`, and a value outside every section.
     pub fn check_sections(&self, known: &[&str]) -> Result<(), ConfigError> {
         for (section, value) in &self.table {
@@ -167,50 +205,26 @@ impl Config {
         Ok(())
     }
 
-    /// One section as its owner's struct, defaults filled in, unknown keys refused.
-    pub fn section<T: DeserializeOwned + Default>(&self, name: &str) -> Result<T, ConfigError> {
-        let Some(given) = self.table.get(name) else {
-            return Ok(T::default());
+    /// One section as its owner's struct: defaults filled in, unknown keys refused, checked by its owner.
+    pub fn section<T: Section>(&self) -> Result<T, ConfigError> {
+        let name = T::NAME;
+        let section: T = match self.table.get(name) {
+            None => T::default(),
+            Some(given) => serde_path_to_error::deserialize(given.clone()).map_err(|error| {
+                self.explain(name, &error.path().to_string(), error.inner().message())
+            })?,
         };
-        serde_path_to_error::deserialize(given.clone())
-            .map_err(|error| self.explain(name, &error.path().to_string(), error.inner().message()))
-    }
-
-    /// One section that its owner has also checked: [`Config::section`], then `validate`.
-    pub fn checked<T>(
-        &self,
-        name: &str,
-        validate: impl FnOnce(&T) -> Checked,
-    ) -> Result<T, ConfigError>
-    where
-        T: DeserializeOwned + Default,
-    {
-        let section = self.section(name)?;
-        validate(&section).map_err(|invalid| ConfigError::Refused {
-            origin: self.origin_of_value(name, &invalid.path),
-            section: name.to_owned(),
-            problem: invalid.to_string(),
-        })?;
+        let checked = section.validate();
+        checked.map_err(|invalid| self.refuse(name, &invalid.path, &invalid))?;
         Ok(section)
     }
 
-    /// The error for a section that cannot be used as a whole; the origin is that of a key that is mentioned.
-    pub fn refuse(&self, section: &str, problem: impl Display) -> ConfigError {
-        let problem = problem.to_string();
-        let words: Vec<&str> = problem
-            .split(|c: char| !(c.is_alphanumeric() || c == '_'))
-            .collect();
-        let prefix = format!("{section}.");
-        let mentioned = self.origins.iter().find(|(path, _)| {
-            path.strip_prefix(&prefix)
-                .and_then(|key| key.rsplit('.').next())
-                .is_some_and(|key| words.contains(&key))
-        });
-        let origin = mentioned.map(|(_, origin)| origin.clone());
+    /// The error for a value at `path` in a section that turns out to be of no use, as a file that cannot be read.
+    pub fn refuse(&self, section: &str, path: &str, problem: impl Display) -> ConfigError {
         ConfigError::Refused {
-            origin: origin.unwrap_or_else(|| self.origin_of_section(section)),
+            origin: self.origin_of_value(section, path),
             section: section.to_owned(),
-            problem,
+            problem: problem.to_string(),
         }
     }
 
@@ -218,11 +232,11 @@ impl Config {
     ///
     /// # Panics
     /// If the struct cannot be written as a TOML table, which is a bug of its owner.
-    pub fn resolve<T: Serialize>(&mut self, name: &str, section: &T) {
+    pub fn resolve<T: Section>(&mut self, section: &T) {
         // By way of text: it writes an f32 with its own shortest digits (0.95, not 0.949999988).
         let text = toml::to_string(section).expect("a section is a TOML table");
         let table: Table = toml::from_str(&text).expect("the text was written by the same library");
-        self.table.insert(name.to_owned(), Value::Table(table));
+        self.table.insert(T::NAME.to_owned(), Value::Table(table));
     }
 
     /// The configuration as TOML.
@@ -299,23 +313,9 @@ impl Config {
 
     /// The origin of anything given in the section: right when there is one file, honest otherwise.
     fn origin_of_section(&self, section: &str) -> String {
-        let prefix = format!("{section}.");
-        let mut found: Vec<&String> = self
-            .origins
-            .iter()
-            .filter(|(path, _)| *path == section || path.starts_with(&prefix))
-            .map(|(_, origin)| origin)
-            .collect();
-        found.sort();
-        found.dedup();
-        match found.as_slice() {
+        match self.origins(section).as_slice() {
             [] => "the defaults".to_owned(),
-            [one] => (*one).clone(),
-            several => several
-                .iter()
-                .map(|o| o.as_str())
-                .collect::<Vec<_>>()
-                .join(" with "),
+            several => several.join(" with "),
         }
     }
 
@@ -334,14 +334,39 @@ impl Config {
 
     /// Forgets what was known of `path` and below, and marks the new value.
     fn remark(&mut self, path: &str, value: &Value, origin: &str) {
-        let below = format!("{path}.");
-        self.origins
-            .retain(|known, _| known != path && !known.starts_with(&below));
+        self.forget(path, true);
         match value {
-            Value::Table(table) => mark(table, &below, origin, &mut self.origins),
+            Value::Table(table) => mark(table, &format!("{path}."), origin, &mut self.origins),
             _ => {
                 self.origins.insert(path.to_owned(), origin.to_owned());
             }
         }
     }
+
+    /// Forgets where a value was given that another takes the place of; all below it as well if `below`.
+    fn forget(&mut self, path: &str, below: bool) {
+        let inside = format!("{path}.");
+        self.origins
+            .retain(|known, _| known != path && !(below && known.starts_with(&inside)));
+    }
+}
+
+/// The one value of a configuration that is one of several tables: of two methods, the later is meant.
+const METHOD: &str = "scheduler.method";
+
+/// Whether two values of [`METHOD`] are of different methods.
+fn other_choice(ours: &Value, theirs: &Value) -> bool {
+    let name = |value: &Value| match value {
+        Value::Table(table) => table.keys().next().cloned(),
+        other => other.as_str().map(str::to_owned),
+    };
+    name(ours) != name(theirs)
+}
+
+/// TOML, or what is wrong with it.
+fn table(text: &str, origin: &str) -> Result<Table, ConfigError> {
+    toml::from_str(text).map_err(|error| ConfigError::Syntax {
+        origin: origin.to_owned(),
+        message: wording::refusal(text, error.span(), error.message()),
+    })
 }

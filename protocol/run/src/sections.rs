@@ -3,12 +3,13 @@
 //! Separate from [`crate::config`] because that reads any section, and these are fields with
 //! meanings and defaults that learner, actors and command line share.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use vocabulary::Checked;
 use vocabulary::invalid::{require, within};
+use vocabulary::{Checked, Physics, Section};
 
 /// When actors collect.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Mode {
     /// Every rollout comes from the newest weights: deterministic for a seed and a set of actors.
@@ -19,7 +20,7 @@ pub enum Mode {
 }
 
 /// `[run]`: how long, how often, how patient.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RunConfig {
     /// The seed from which every process derives its own. A TOML integer: at most 2⁶³ − 1.
@@ -32,7 +33,7 @@ pub struct RunConfig {
     /// The iteration at which the run is complete, counted from its very first; 0 = no limit.
     /// Table II: 20,000.
     pub iterations: u64,
-    /// Minutes after which this launch ends in order; 0 = no limit.
+    /// Time after which this launch ends in order, min; 0 = no limit.
     pub minutes: f64,
     /// Iterations between checkpoints; one more is written whenever the learner stops.
     pub checkpoint_every: u64,
@@ -50,24 +51,26 @@ pub struct RunConfig {
 }
 
 /// `[run.deadlines]`, all in seconds.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Deadlines {
-    /// The learner waits this long for an actor's rollout before it goes on without that actor.
+    /// How long the learner waits for an actor's rollout before it goes on without that actor, s.
     pub rollout_seconds: f64,
-    /// The learner, in lock-step, waits this long for the scheduler's answer before it goes on
-    /// with the last directive.
+    /// How long the learner, in lock-step, waits for the scheduler's answer before it goes on with the last directive, s.
     pub directive_seconds: f64,
-    /// An actor waits this long for room in a full stream before it drops a rollout and counts it.
+    /// How long an actor waits for room in a full stream before it drops a rollout and counts it, s.
     pub send_seconds: f64,
-    /// After the order to end, processes have this long before they are killed.
+    /// How long processes have after the order to end before they are killed, s.
     pub stop_seconds: f64,
 }
 
 /// `[fleet]`: how much is simulated.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FleetConfig {
+    /// Which engine moves the robots: `"rapier"` (default; the judge of every result) or `"batched"`, the fast solver for
+    /// this one robot.
+    pub physics: Physics,
     /// Environments of the whole group, shared evenly among the actors it starts with.
     pub environments: usize,
     /// Control steps per environment and rollout (the paper: 24).
@@ -107,6 +110,7 @@ impl Default for Deadlines {
 impl Default for FleetConfig {
     fn default() -> Self {
         Self {
+            physics: Physics::default(),
             environments: 256,
             steps: 32,
             actors: 0,
@@ -114,9 +118,10 @@ impl Default for FleetConfig {
     }
 }
 
-impl RunConfig {
-    /// Refuses the first value out of range.
-    pub fn validate(&self) -> Checked {
+impl Section for RunConfig {
+    const NAME: &'static str = "run";
+
+    fn validate(&self) -> Checked {
         require(
             i64::try_from(self.seed).is_ok(),
             "seed",
@@ -157,9 +162,10 @@ impl RunConfig {
     }
 }
 
-impl FleetConfig {
-    /// Refuses the first value out of range.
-    pub fn validate(&self) -> Checked {
+impl Section for FleetConfig {
+    const NAME: &'static str = "fleet";
+
+    fn validate(&self) -> Checked {
         for (name, value, most) in [
             ("environments", self.environments, 1 << 20),
             ("steps", self.steps, 1 << 12),
@@ -179,7 +185,9 @@ impl FleetConfig {
             ),
         )
     }
+}
 
+impl FleetConfig {
     /// Environments of one actor: an even share, rounded up so that all actors send one shape.
     pub fn environments_per_actor(&self) -> usize {
         self.environments.div_ceil(self.actors.max(1))
@@ -235,6 +243,7 @@ mod tests {
                 environments,
                 steps: 1,
                 actors,
+                ..FleetConfig::default()
             };
             fleet.environments_per_actor()
         };

@@ -1,13 +1,14 @@
 //! Configuration as a user meets it: presets, `--set`, and what an error says.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use run::{Config, ConfigError, FleetConfig, Mode, RunConfig};
-use vocabulary::Checked;
 use vocabulary::invalid::require;
+use vocabulary::{Checked, Section};
 
 /// A section with what real ones have: a number, a choice, a table, a list, an option.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 struct Walk {
     speed: f32,
@@ -19,14 +20,14 @@ struct Walk {
     label: Option<String>,
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum Method {
     Plain,
     Amp { style_weight: f32 },
 }
 
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 struct Limit {
     lower: f32,
@@ -46,7 +47,9 @@ impl Default for Walk {
     }
 }
 
-impl Walk {
+impl Section for Walk {
+    const NAME: &'static str = "walk";
+
     fn validate(&self) -> Checked {
         require(self.speed <= 2.0, "speed", self.speed, "use at most 2")
     }
@@ -57,12 +60,12 @@ fn config(text: &str) -> Config {
 }
 
 fn complaint(config: &Config) -> String {
-    config.section::<Walk>("walk").unwrap_err().to_string()
+    config.section::<Walk>().unwrap_err().to_string()
 }
 
 #[test]
 fn nothing_given_is_the_defaults() {
-    assert_eq!(config("").section::<Walk>("walk").unwrap(), Walk::default());
+    assert_eq!(config("").section::<Walk>().unwrap(), Walk::default());
 }
 
 #[test]
@@ -71,7 +74,7 @@ fn a_preset_changes_only_what_it_mentions_and_set_wins() {
     config.merge(Config::parse("[walk.limit]\nupper = 0.9", "b.toml").unwrap());
     config.set("walk.speed=1.5").unwrap();
     config.set("walk.method.amp.style_weight=0.7").unwrap();
-    let walk: Walk = config.section("walk").unwrap();
+    let walk: Walk = config.section().unwrap();
     let expected = Walk {
         speed: 1.5,
         steps: 8,
@@ -154,7 +157,7 @@ fn an_unknown_section_is_answered_with_the_closest() {
 fn an_owners_refusal_names_where_the_key_was_given() {
     let mut config = config("[walk]\nsteps = 8");
     config.set("walk.speed=3").unwrap();
-    let error = config.checked("walk", Walk::validate).unwrap_err();
+    let error = config.section::<Walk>().unwrap_err();
     assert!(matches!(error, ConfigError::Refused { .. }));
     let message = error.to_string();
     assert!(
@@ -167,8 +170,9 @@ fn an_owners_refusal_names_where_the_key_was_given() {
         ("clips[0].lower", "--set walk.clips=[]"),
         ("steps", "preset walk"),
     ] {
-        let refused = |_: &Walk| require(false, path, 1, "another");
-        let message = config.checked("walk", refused).unwrap_err().to_string();
+        let message = config
+            .refuse("walk", path, format!("{path} = 1"))
+            .to_string();
         assert!(
             message.starts_with(&format!("{origin}: [walk] {path} = 1")),
             "{message}"
@@ -193,10 +197,10 @@ fn the_resolved_file_reads_back_as_the_same_values() {
     let path = folder.path().join("config.toml");
     let mut given =
         config("[walk]\nclips = [{ upper = 0.3 }]\nmethod = { amp = { style_weight = 0.1 } }");
-    let walk: Walk = given.section("walk").unwrap();
-    given.resolve("walk", &walk);
-    given.resolve("run", &RunConfig::default());
-    given.resolve("fleet", &FleetConfig::default());
+    let walk: Walk = given.section().unwrap();
+    given.resolve(&walk);
+    given.resolve(&RunConfig::default());
+    given.resolve(&FleetConfig::default());
     given.write(&path, "Made by a test.").unwrap();
 
     let text = std::fs::read_to_string(&path).unwrap();
@@ -206,13 +210,10 @@ fn the_resolved_file_reads_back_as_the_same_values() {
         "an f32 keeps its own digits: {text}"
     );
     let back = Config::read(&path).unwrap();
-    assert_eq!(back.section::<Walk>("walk").unwrap(), walk);
+    assert_eq!(back.section::<Walk>().unwrap(), walk);
+    assert_eq!(back.section::<RunConfig>().unwrap(), RunConfig::default());
     assert_eq!(
-        back.section::<RunConfig>("run").unwrap(),
-        RunConfig::default()
-    );
-    assert_eq!(
-        back.section::<FleetConfig>("fleet").unwrap(),
+        back.section::<FleetConfig>().unwrap(),
         FleetConfig::default()
     );
 }
@@ -223,13 +224,13 @@ fn a_key_without_a_section_belongs_to_the_run() {
     config.set("seed=7").unwrap();
     config.set("mode=overlapped").unwrap();
     config.put("run.iterations", 50, "--iterations 50");
-    let run: RunConfig = config.section("run").unwrap();
+    let run: RunConfig = config.section().unwrap();
     assert_eq!(
         (run.seed, run.mode, run.iterations),
         (7, Mode::Overlapped, 50)
     );
     config.set("sed=7").unwrap();
-    let message = config.section::<RunConfig>("run").unwrap_err().to_string();
+    let message = config.section::<RunConfig>().unwrap_err().to_string();
     assert!(
         message.starts_with("--set sed=7: unknown key `sed` in [run]"),
         "{message}"
@@ -287,12 +288,7 @@ fn a_value_of_megabytes_is_refused_in_a_line() {
         format!("[walk.limit]\n\"{long}\\u001b\" = 1"),
         "[walk]\nspeed = \"\\u001b[2J\"".to_owned(),
     ] {
-        assert_short(
-            &config(&text)
-                .section::<Walk>("walk")
-                .unwrap_err()
-                .to_string(),
-        );
+        assert_short(&config(&text).section::<Walk>().unwrap_err().to_string());
     }
     let unknown = config(&format!("[{long}]\nx = 1"));
     assert_short(&unknown.check_sections(&["walk"]).unwrap_err().to_string());
@@ -304,7 +300,7 @@ fn a_value_of_megabytes_is_refused_in_a_line() {
 fn a_table_over_a_word_is_blamed_on_who_gave_it() {
     let mut config = Config::parse("[walk]\nmethod = \"plain\"", "a file").unwrap();
     config.set("walk.method.plain.alpha=0.5").unwrap();
-    let error = config.section::<Walk>("walk").unwrap_err().to_string();
+    let error = config.section::<Walk>().unwrap_err().to_string();
     assert!(
         error.contains("--set walk.method.plain.alpha=0.5"),
         "{error}"

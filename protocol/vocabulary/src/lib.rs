@@ -9,13 +9,19 @@
 //! | a value that may move over the samples | [`ramp`] |
 //! | why a value of the configuration is refused | [`invalid`] |
 //! | a number that may be `null` in a file | [`number`] |
+//! | what a section of the configuration is | [`section`] |
+//! | which engine moves the robots | [`physics`] |
 #![forbid(unsafe_code)]
 
 pub mod cause;
 pub mod invalid;
 pub mod number;
+pub mod physics;
 pub mod ramp;
+pub mod section;
 
 pub use cause::{Cause, Counts, RUNNING};
 pub use invalid::{Checked, Invalid};
+pub use physics::Physics;
 pub use ramp::Ramp;
+pub use section::Section;

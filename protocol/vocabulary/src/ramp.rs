@@ -4,9 +4,11 @@
 //! learner has used, so that all that moves over a run is read by one clock.
 
 use crate::invalid::{Checked, Invalid};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, Error, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
@@ -21,7 +23,7 @@ pub enum Ramp<T> {
 }
 
 /// From where to where a value goes, and when.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Way<T> {
     /// Its value until the first number of samples.
@@ -148,6 +150,18 @@ impl<T> From<T> for Ramp<T> {
 impl<T: Default> Default for Ramp<T> {
     fn default() -> Self {
         Self::Constant(T::default())
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for Ramp<T> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("Ramp_of_{}", T::schema_name()).into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let value = generator.subschema_for::<T>();
+        let way = generator.subschema_for::<Way<T>>();
+        json_schema!({ "anyOf": [value, way] })
     }
 }
 

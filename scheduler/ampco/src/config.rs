@@ -1,14 +1,15 @@
 //! The `[scheduler]` section of a run's configuration: the paper's values by default, its open places as knobs.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use vocabulary::Checked;
 use vocabulary::invalid::require;
+use vocabulary::{Checked, Section};
 
 use crate::weighting::guidance::CeilingKind;
 use crate::{Granularity, Method};
 
 /// Every knob of the schedule. Defaults are Table II and the paper's literal text.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ScheduleConfig {
     /// Method of weighting. Default: the paper's own.
@@ -58,7 +59,7 @@ impl Default for ScheduleConfig {
 }
 
 /// When convergence is tested.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ArmKind {
     /// As soon as the windows are full, as Algorithm 1 is written.
@@ -71,7 +72,7 @@ pub enum ArmKind {
 }
 
 /// Where mean and deviation of Eq. 13 come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BoundsSource {
     /// The transitions of the batch in which convergence was found.
@@ -83,9 +84,10 @@ pub enum BoundsSource {
 /// Largest window accepted: its memory is taken at once, about 50 bytes an iteration.
 const LARGEST_WINDOW: usize = 10_000_000;
 
-impl ScheduleConfig {
-    /// Refuses the first value that the mathematics cannot take.
-    pub fn validate(&self) -> Checked {
+impl Section for ScheduleConfig {
+    const NAME: &'static str = "scheduler";
+
+    fn validate(&self) -> Checked {
         let strictly_inside = |x: f64| x > 0.0 && x < 1.0;
         require(
             (2..=LARGEST_WINDOW).contains(&self.window),

@@ -1,11 +1,12 @@
 //! The methods that the paper compares, each a short composition: a rule for phase I and what follows convergence.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{Rule, Weights};
 
 /// A method of the comparison (III-D) or of the ablation (III-E), as a preset names it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Method {
     /// AMP: constant weights. The paper compares wˢ of 0.5, 0.7 and 0.8.

@@ -7,7 +7,7 @@ use crate::{
     AfterConvergence, Bounds, BoundsSource, Decision, Granularity, Phase, Report, ReportError,
     Rule, ScheduleConfig, Switch, Weighting,
 };
-use vocabulary::Invalid;
+use vocabulary::{Invalid, Section};
 
 /// Everything that the decisions of a run depend on.
 #[derive(Clone, Debug)]

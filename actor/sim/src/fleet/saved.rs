@@ -48,7 +48,7 @@ impl Fleet {
         }
         if !self.bodies.restore(snapshot.bodies) {
             return Err(SimError::Engine {
-                expected: self.setting.task.physics,
+                expected: self.physics,
             });
         }
         self.environments = snapshot.environments;

@@ -10,7 +10,7 @@ mod table;
 use super::*;
 use crate::command::CommandConfig;
 use crate::model::Variation;
-use crate::physics::Physics;
+use crate::randomization::Push;
 use crate::reward::RewardConfig;
 use crate::reward::track::Track;
 use crate::rows::StepRows;
@@ -45,7 +45,17 @@ fn walking_frames() -> Starts {
 }
 
 fn fleet(task: &TaskConfig, randomization: &RandomizationConfig, n: usize, seed: u64) -> Fleet {
-    Fleet::new(task, randomization, walking_frames(), n, seed).unwrap()
+    fleet_in(Physics::Rapier, task, randomization, n, seed)
+}
+
+fn fleet_in(
+    physics: Physics,
+    task: &TaskConfig,
+    randomization: &RandomizationConfig,
+    n: usize,
+    seed: u64,
+) -> Fleet {
+    Fleet::new(physics, task, randomization, walking_frames(), n, seed).unwrap()
 }
 
 /// Actions from a generator of their own.
@@ -85,13 +95,11 @@ fn eventful() -> (TaskConfig, RandomizationConfig) {
         ..TaskConfig::default()
     };
     let randomization = RandomizationConfig {
-        impulse_seconds: [0.1, 0.3],
-        ..RandomizationConfig::default()
+        impulse: Some(Push {
+            range: [0.0, 0.5],
+            seconds: [0.1, 0.3],
+        }),
+        ..RandomizationConfig::table_one()
     };
     (task, randomization)
-}
-
-fn eventful_in(physics: Physics) -> (TaskConfig, RandomizationConfig) {
-    let (task, randomization) = eventful();
-    (TaskConfig { physics, ..task }, randomization)
 }

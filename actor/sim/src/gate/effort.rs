@@ -2,13 +2,14 @@
 
 use crate::moment::Moment;
 use crate::terms::Term;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, Ramp};
 
 /// g = exp(−w·E), E the positive mechanical work of the step, J, and w the weight, 1/J
 ///
 /// Walking at 1 m/s takes 2 to 3 J a step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Effort {
     /// What a joule costs, 1/J. Default 0.01.

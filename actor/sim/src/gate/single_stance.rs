@@ -8,12 +8,13 @@ use crate::kind::Kind;
 use crate::moment::Moment;
 use crate::terms::Term;
 use crate::time::CONTROL_STEP;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, Ramp, invalid};
 
 /// What standing on one foot pays. As Isaac Lab's `feet_air_time_positive_biped`, which adds a reward;
 /// here it is a factor, so that the task reward stays between 0 and 1, where Eq. 9 and Eq. 12 expect it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SingleStance {
     /// The power that the factor is raised to. Default 1.

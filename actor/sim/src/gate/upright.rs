@@ -2,11 +2,12 @@
 
 use crate::moment::{self, Moment};
 use crate::terms::Term;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, Ramp};
 
 /// g = max(0, −g_z), g_z of the unit gravity in the base frame: 1 upright, 0 lying   (Eq. 14)
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Upright {
     /// The power that it is raised to. Default 1, Eq. 14; 0 takes it away.

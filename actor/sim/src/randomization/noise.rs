@@ -3,7 +3,7 @@
 //! Separate because it is drawn for every number of every observation: laid out once as the numbers of an observation
 //! are, so that one loop without questions adds it.
 
-use super::RandomizationConfig;
+use super::{RandomizationConfig, Row};
 use g1::{OBSERVATION, observation};
 use rand::{Rng, RngExt};
 use std::ops::Range;
@@ -26,40 +26,23 @@ pub(crate) struct SensorNoise {
 impl SensorNoise {
     /// As a table says.
     pub(crate) fn of(table: &RandomizationConfig) -> Self {
-        let rows: [(bool, [f32; 2], Range<usize>); 5] = [
-            (
-                table.linear_velocity_noise,
-                table.linear_velocity_range,
-                observation::LINEAR_VELOCITY,
-            ),
-            (
-                table.angular_velocity_noise,
-                table.angular_velocity_range,
-                observation::ANGULAR_VELOCITY,
-            ),
-            (
-                table.gravity_noise,
-                table.gravity_range,
-                observation::GRAVITY,
-            ),
-            (
-                table.joint_position_noise,
-                table.joint_position_range,
-                observation::JOINT_POSITION,
-            ),
-            (
-                table.joint_velocity_noise,
-                table.joint_velocity_range,
-                observation::JOINT_VELOCITY,
-            ),
+        let rows: [(Option<Row>, Range<usize>); 5] = [
+            (table.linear_velocity_noise, observation::LINEAR_VELOCITY),
+            (table.angular_velocity_noise, observation::ANGULAR_VELOCITY),
+            (table.gravity_noise, observation::GRAVITY),
+            (table.joint_position_noise, observation::JOINT_POSITION),
+            (table.joint_velocity_noise, observation::JOINT_VELOCITY),
         ];
         let mut noise = Self {
-            on: rows.iter().any(|(on, ..)| *on),
+            on: rows.iter().any(|(row, _)| row.is_some()),
             least: [0.0; NUMBERS],
             span: [0.0; NUMBERS],
         };
-        for (on, [least, greatest], numbers) in rows {
-            if on {
+        for (row, numbers) in rows {
+            if let Some(Row {
+                range: [least, greatest],
+            }) = row
+            {
                 noise.least[numbers.clone()].fill(least);
                 noise.span[numbers].fill(greatest - least);
             }
@@ -111,7 +94,7 @@ mod tests {
 
     #[test]
     fn noise_is_uniform_and_its_numbers_know_nothing_of_each_other() {
-        let table = RandomizationConfig::default();
+        let table = RandomizationConfig::table_one();
         let noise = SensorNoise::of(&table);
         let mut rng = Pcg64Mcg::seed_from_u64(3);
         let draws = 20_000;

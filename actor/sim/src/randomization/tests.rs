@@ -31,14 +31,10 @@ fn fills(got: [f32; 2], [least, greatest]: [f32; 2]) {
 
 #[test]
 fn rows_of_the_robot_and_the_floor() {
-    let none = RandomizationConfig::none();
+    let none = RandomizationConfig::default();
     assert_eq!(none.draw_variation(&mut rng()), Variation::NOMINAL);
-    assert!(!none.varies());
 
-    let mass = RandomizationConfig {
-        mass_variation: true,
-        ..RandomizationConfig::none()
-    };
+    let mass = RandomizationConfig::only(["mass_variation"]).unwrap();
     let mut rng = rng();
     fills(
         spread(|| mass.draw_variation(&mut rng).torso_mass),
@@ -53,10 +49,7 @@ fn rows_of_the_robot_and_the_floor() {
         Variation::NOMINAL
     );
 
-    let friction = RandomizationConfig {
-        friction: true,
-        ..RandomizationConfig::none()
-    };
+    let friction = RandomizationConfig::only(["friction"]).unwrap();
     fills(
         spread(|| friction.draw_variation(&mut rng).friction),
         [0.5, 1.0],
@@ -70,10 +63,7 @@ fn rows_of_the_robot_and_the_floor() {
         Variation::NOMINAL
     );
 
-    let com = RandomizationConfig {
-        com_offset: true,
-        ..RandomizationConfig::none()
-    };
+    let com = RandomizationConfig::only(["com_offset"]).unwrap();
     for axis in 0..3 {
         fills(
             spread(|| com.draw_variation(&mut rng).torso_com[axis]),
@@ -93,26 +83,28 @@ fn rows_of_the_robot_and_the_floor() {
 #[test]
 fn row_of_pushes() {
     assert_eq!(
-        RandomizationConfig::none().draw_push_interval(&mut rng()),
+        RandomizationConfig::default().draw_push_interval(&mut rng()),
         None
     );
-    let pushes = RandomizationConfig {
-        impulse: true,
-        ..RandomizationConfig::none()
-    };
+    let pushes = RandomizationConfig::only(["impulse"]).unwrap();
+    assert_eq!(
+        RandomizationConfig::default().draw_push(&mut rng()),
+        None,
+        "no row, no push"
+    );
     let mut rng = rng();
     for axis in 0..2 {
         fills(
-            spread(|| pushes.draw_push(&mut rng)[axis].abs()),
+            spread(|| pushes.draw_push(&mut rng).unwrap()[axis].abs()),
             [0.0, 0.5],
         );
         // Both signs come about equally often: Binomial(2000, ½) has a deviation of 22.
         let left = (0..2_000)
-            .filter(|_| pushes.draw_push(&mut rng)[axis] < 0.0)
+            .filter(|_| pushes.draw_push(&mut rng).unwrap()[axis] < 0.0)
             .count();
         assert!(left.abs_diff(1_000) < 112, "{left}");
     }
-    assert_eq!(pushes.draw_push(&mut rng).z, 0.0);
+    assert_eq!(pushes.draw_push(&mut rng).unwrap().z, 0.0);
     for _ in 0..500 {
         let steps = pushes.draw_push_interval(&mut rng).unwrap();
         assert!((250..=500).contains(&steps)); // 5 to 10 s at 50 Hz
@@ -121,22 +113,20 @@ fn row_of_pushes() {
 
 #[test]
 fn rows_of_the_sensors() {
-    let none = RandomizationConfig::none();
-    type Row = (fn(&mut RandomizationConfig), Range<usize>, f32);
-    let rows: [Row; 5] = [
-        (|c| c.linear_velocity_noise = true, 1..4, 0.1),
-        (|c| c.angular_velocity_noise = true, 4..7, 0.2),
-        (|c| c.gravity_noise = true, 7..10, 0.05),
-        (|c| c.joint_position_noise = true, 13..36, 0.01),
-        (|c| c.joint_velocity_noise = true, 36..59, 1.5),
+    let none = RandomizationConfig::default();
+    let rows: [(&str, Range<usize>, f32); 5] = [
+        ("linear_velocity_noise", 1..4, 0.1),
+        ("angular_velocity_noise", 4..7, 0.2),
+        ("gravity_noise", 7..10, 0.05),
+        ("joint_position_noise", 13..36, 0.01),
+        ("joint_velocity_noise", 36..59, 1.5),
     ];
     let mut rng = rng();
     let mut still = [0.25; g1::OBSERVATION];
     SensorNoise::of(&none).blur(&mut still, &mut rng);
     assert_eq!(still, [0.25; g1::OBSERVATION]);
-    for (switch, numbers, size) in rows {
-        let mut config = none.clone();
-        switch(&mut config);
+    for (row, numbers, size) in rows {
+        let config = RandomizationConfig::only([row]).unwrap();
         let noise = SensorNoise::of(&config);
         let mut blur = || {
             let mut observation = [0.0; g1::OBSERVATION];
@@ -152,49 +142,71 @@ fn rows_of_the_sensors() {
 
 #[test]
 fn impossible_ranges_are_refused() {
-    RandomizationConfig::default().validate().unwrap();
-    let bad = RandomizationConfig {
-        mass_range: [-8.0, 0.0],
-        ..RandomizationConfig::default()
+    RandomizationConfig::table_one().validate().unwrap();
+    let refused = |text: &str| {
+        let config: RandomizationConfig = toml::from_str(text).unwrap();
+        config.validate().unwrap_err().path
     };
-    assert!(
-        bad.validate()
-            .unwrap_err()
-            .to_string()
-            .contains("mass_range")
-    );
-    let bad = RandomizationConfig {
-        com_range: [0.1, -0.1],
-        ..RandomizationConfig::default()
-    };
-    assert!(
-        bad.validate()
-            .unwrap_err()
-            .to_string()
-            .contains("com_range")
-    );
+    for (text, path) in [
+        // The torso weighs 7.8 kg.
+        (
+            "mass_variation = { range = [-8.0, 0.0] }",
+            "mass_variation.range[0]",
+        ),
+        ("com_offset = { range = [0.1, -0.1] }", "com_offset.range"),
+        ("friction = { range = [-0.1, 1.0] }", "friction.range[0]"),
+        ("impulse = { range = [nan, 1.0] }", "impulse.range"),
+        (
+            "impulse = { range = [0.0, 0.5], seconds = [5.0, 4.0] }",
+            "impulse.seconds",
+        ),
+        (
+            "impulse = { range = [0.0, 0.5], seconds = [0.0, 4.0] }",
+            "impulse.seconds[0]",
+        ),
+        (
+            "joint_velocity_noise = { range = [1.0, inf] }",
+            "joint_velocity_noise.range",
+        ),
+    ] {
+        assert_eq!(refused(text), path, "{text}");
+    }
+}
+
+#[test]
+fn an_empty_table_is_nothing_and_a_row_is_its_range() {
+    let read = |text: &str| toml::from_str::<RandomizationConfig>(text);
+    assert_eq!(read("").unwrap(), RandomizationConfig::default());
+    let friction = read("friction = { range = [0.5, 1.0] }").unwrap();
+    assert_eq!(Some(friction), RandomizationConfig::only(["friction"]));
+    // The paper gives no times between pushes.
+    let push = read("impulse = { range = [0.0, 0.5] }").unwrap();
+    assert_eq!(Some(push), RandomizationConfig::only(["impulse"]));
+    assert!(read("friction = {}").is_err() && read("friction = true").is_err());
+    assert!(read("friction = { range = [0.5, 1.0], on = true }").is_err());
 }
 
 #[test]
 fn the_table_grows_with_the_samples() {
     let config = RandomizationConfig {
         strength: Ramp::moving(0.0, 1.0, [1e6, 3e6]),
-        gravity_noise: false,
-        ..RandomizationConfig::default()
+        gravity_noise: None,
+        ..RandomizationConfig::table_one()
     };
     config.validate().unwrap();
-    assert_eq!(config.at(1e6), RandomizationConfig::none());
+    assert_eq!(config.at(1e6), RandomizationConfig::default());
     let half = config.at(2e6);
-    assert_eq!(half.mass_range, [-0.25, 0.25]);
-    assert_eq!(half.friction_range, [0.75, 1.0]); // halfway from 1
-    assert_eq!(half.joint_velocity_range, [-0.75, 0.75]);
-    assert!(half.impulse && !half.gravity_noise);
+    let range = |row: Option<Row>| row.unwrap().range;
+    assert_eq!(range(half.mass_variation), [-0.25, 0.25]);
+    assert_eq!(range(half.friction), [0.75, 1.0]); // halfway from 1
+    assert_eq!(range(half.joint_velocity_noise), [-0.75, 0.75]);
+    assert!(half.impulse.is_some() && half.gravity_noise.is_none());
     let grown = RandomizationConfig {
         strength: 1.0.into(),
         ..config.clone()
     };
     assert_eq!(config.at(9e6), grown);
-    let whole = RandomizationConfig::default();
+    let whole = RandomizationConfig::table_one();
     assert_eq!(whole.at(0.0), whole);
     let backward = RandomizationConfig {
         strength: Ramp::moving(0.0, 1.0, [1e6, 0.5e6]),
@@ -209,18 +221,17 @@ fn every_row_can_be_alone() {
     for row in ROWS {
         let only = RandomizationConfig::only([row]).unwrap();
         let switched = toml::Table::try_from(&only).unwrap();
-        let on =
-            |(key, value): (String, toml::Value)| (value.as_bool() == Some(true)).then_some(key);
-        let on: Vec<String> = switched.into_iter().filter_map(on).collect();
+        let listed = switched.into_iter().filter(|(_, value)| value.is_table());
+        let on: Vec<String> = listed.map(|(key, _)| key).collect();
         assert_eq!(on, [row]);
     }
     assert_eq!(
         RandomizationConfig::only([]),
-        Some(RandomizationConfig::none())
+        Some(RandomizationConfig::default())
     );
     assert_eq!(
         RandomizationConfig::only(ROWS),
-        Some(RandomizationConfig::default())
+        Some(RandomizationConfig::table_one())
     );
     assert_eq!(RandomizationConfig::only(["push"]), None);
 }

@@ -2,13 +2,14 @@
 
 use crate::moment::Moment;
 use crate::terms::Term;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, Ramp, invalid};
 
 /// r = exp(−k·(‖v* − v‖² + w·(ω* − ω)²))   (Eq. 14; w = 0 in the paper)
 ///
 /// v is the pelvis' planar velocity in the heading frame, ω its yaw rate about the vertical.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Track {
     /// How much it counts beside other terms. Default 1.

@@ -2,11 +2,12 @@
 
 use crate::moment::uprightness;
 use g1::RobotState;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, invalid};
 
 /// When a robot has fallen.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FallConfig {
     /// Pelvis height below which it has, m. Default 0.55, of the recipe that walked.

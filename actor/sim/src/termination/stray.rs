@@ -7,11 +7,12 @@
 
 use crate::time::CONTROL_STEP;
 use g1::RobotState;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, Ramp, invalid};
 
 /// When a robot has strayed from its command.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct StrayConfig {
     /// Greatest error of the mean velocity as a share of the commanded speed. Default 0.5.

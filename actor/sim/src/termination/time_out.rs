@@ -1,10 +1,11 @@
 //! Time-outs: an episode is cut for its length.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, invalid};
 
 /// When the time is up.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct TimeOutConfig {
     /// Control steps in an episode. Default 1000, the 20 s of III-F.

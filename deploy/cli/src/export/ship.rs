@@ -84,7 +84,7 @@ fn configuration(kept: &Kept, learned: &[Print]) -> Result<(Config, String)> {
          Written by `ampco export --ship`.",
         kept.run_name()?
     );
-    let motion: MotionConfig = config.section("motion")?;
+    let motion: MotionConfig = config.section()?;
     let (built_in, files): (Vec<_>, Vec<_>) =
         motion.clips.into_iter().partition(ClipConfig::is_built_in);
     // A policy that was shipped before has the hashes alone.
@@ -94,7 +94,7 @@ fn configuration(kept: &Kept, learned: &[Print]) -> Result<(Config, String)> {
             clips: built_in,
             ..motion
         };
-        config.resolve("motion", &rest);
+        config.resolve(&rest);
         if rest.clips.is_empty() {
             // No clip at all is refused by whoever reads it; without the key the default walks stand in.
             config.remove("motion.clips");
@@ -232,7 +232,7 @@ mod tests {
                     sha256: "0123".into()
                 }]
             );
-            let motion: MotionConfig = subject.kept.config().section("motion").unwrap();
+            let motion: MotionConfig = subject.kept.config().section().unwrap();
             assert_eq!(motion.clips.len(), left);
             assert!(!subject.starts([0.5, 0.0, 0.0]).states.is_empty());
             // Shipped again it is the same.

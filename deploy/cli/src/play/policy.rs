@@ -57,13 +57,21 @@ pub(crate) fn record(subject: &Subject, show: &Show) -> Result<Recording> {
         height: LYING,
         upright: -1.0,
     };
-    task.physics = show.physics;
     let starts = if show.from_reference {
         subject.starts(show.commands[0])
     } else {
         Starts::default()
     };
-    let begin = |seed| Fleet::new(&task, &show.randomization, starts.clone(), 1, seed);
+    let begin = |seed| {
+        Fleet::new(
+            show.physics,
+            &task,
+            &show.randomization,
+            starts.clone(),
+            1,
+            seed,
+        )
+    };
     let mut fleet = begin(show.seed)?;
     let mut policy = subject.policy()?;
     let mut rows = StepRows::filled(1, 0.0);
@@ -147,7 +155,7 @@ mod tests {
         let show = Show {
             commands: vec![[0.0; 3], [0.5, 0.0, 0.0], [1.0, 0.0, 0.0]],
             seconds: 0.1,
-            randomization: RandomizationConfig::none(),
+            randomization: RandomizationConfig::default(),
             from_reference: false,
             physics: Physics::Rapier,
             seed: 1,

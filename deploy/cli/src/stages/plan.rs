@@ -159,7 +159,7 @@ impl Stage {
         if let Some(actors) = actors {
             config.put("fleet.actors", i64::from(actors), "--actors");
         }
-        resolve::anchor_files(&mut config, found.file.as_deref())?;
+        resolve::anchor_files(&mut config)?;
         let fleet = resolve::resolve(&mut config)?.fleet;
         Ok(Planned {
             run: format!("{stem}-{}", self.name),

@@ -22,7 +22,7 @@ pub(super) fn run(folder: Folder) -> Result<()> {
             "--watch draws on a terminal and this is none; use `ampco status` or --json",
         ));
     }
-    let config: RunConfig = folder.config()?.section("run")?;
+    let config: RunConfig = folder.config()?.section()?;
     let mut board = Board {
         run: folder.name(),
         iterations: config.iterations,

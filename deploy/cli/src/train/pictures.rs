@@ -45,9 +45,9 @@ fn page_of(place: &Place, folder: &Folder) -> Result<(PathBuf, String)> {
         &Show {
             seconds: SECONDS * commands.len() as f64,
             commands: commands.to_vec(),
-            randomization: RandomizationConfig::none(),
+            randomization: RandomizationConfig::default(),
             from_reference: false,
-            physics: subject.task.physics,
+            physics: subject.physics,
             seed: 1,
             again: true,
         },

@@ -30,14 +30,11 @@ impl Train {
         let folder = self.place.find(self.run.as_deref())?;
         let before = present(&folder)?;
         let mut config = before.clone();
-        let mut preset_file = None;
         if let Some(name) = &self.preset {
-            let preset = presets::find(name)?;
-            lay(&mut config, preset.config, name);
-            preset_file = preset.file;
+            presets::lay_over(&mut config, name)?;
         }
         self.apply(&mut config)?;
-        resolve::anchor_files(&mut config, preset_file.as_deref())?;
+        resolve::anchor_files(&mut config)?;
         let resolved = resolve::resolve(&mut config)?;
         let going_on = if folder.checkpoints().list().is_empty() {
             say("there is no checkpoint yet: the run begins anew");
@@ -116,15 +113,6 @@ fn present(folder: &Folder) -> Result<Config> {
         };
         usage(format!("{:#}{remedy}", anyhow::Error::from(error)))
     })
-}
-
-/// Lays a preset over a configuration. A method is one of several: laid over another, it would be two.
-fn lay(config: &mut Config, preset: Config, name: &str) {
-    const METHOD: &str = "scheduler.method";
-    if let Some(method) = preset.given(METHOD) {
-        config.put(METHOD, method.clone(), &format!("preset {name}"));
-    }
-    config.merge(preset);
 }
 
 /// What changes between a checkpoint and the configuration that is asked for, which `before` was before that.

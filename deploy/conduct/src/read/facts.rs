@@ -60,7 +60,7 @@ pub(super) fn of(
             format!("{}, {}", value("fleet.environments"), value("fleet.steps")),
         );
         tell("iterations of a run", run.target.to_string());
-        tell("physics in training", value("task.physics"));
+        tell("physics in training", value("fleet.physics"));
         tell("scheduler's window, iterations", value("scheduler.window"));
         tell(
             "percentile, alpha",

@@ -2,11 +2,12 @@
 
 use super::Check;
 use crate::{COMMAND, FEATURES};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use vocabulary::Checked;
+use vocabulary::{Checked, Section};
 
 /// `[discriminator]`: the judge of style.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DiscriminatorConfig {
     /// States that it looks at. The paper's pair; longer windows show rhythm (see [`crate::window`]).
@@ -14,8 +15,8 @@ pub struct DiscriminatorConfig {
     /// Control steps from one of these states to the next. The paper's are successive (1); six states three steps apart
     /// span 0.3 s, half a step of walking.
     pub spacing: usize,
-    /// Whether it also sees how far the velocity is off the command, and of reference motion off its clip's own. That
-    /// is blurred by so much either way (m/s, m/s, rad/s), so that an error below it is nothing odd. Default: it does
+    /// How much it sees of how far the velocity is off the command, and of reference motion off its clip's own: blurred by
+    /// so much either way (m/s, m/s, rad/s), so that an error below it is nothing odd. Default: it does
     /// not, as in the paper. Then any motion of the data is good style whatever was asked for, and of those standing
     /// is the easiest.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -48,18 +49,18 @@ pub struct DiscriminatorConfig {
 
 /// `[discriminator.floors]`, each in its own unit. The recipe's: without that of joint velocities, exploration noise
 /// gives the policy away.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Floors {
-    /// m
+    /// Of the pelvis' height, m.
     pub height: f32,
-    /// m/s
+    /// Of the pelvis' velocity, m/s.
     pub linear_velocity: f32,
-    /// rad/s
+    /// Of the pelvis' angular velocity, rad/s.
     pub angular_velocity: f32,
-    /// rad
+    /// Of the joints' positions, rad.
     pub joint_position: f32,
-    /// rad/s
+    /// Of the joints' velocities, rad/s.
     pub joint_velocity: f32,
 }
 
@@ -97,14 +98,10 @@ impl Default for Floors {
     }
 }
 
-impl DiscriminatorConfig {
-    /// Numbers that it sees of a window: `[frames][53]`, then the command if it sees that.
-    pub fn width(&self) -> usize {
-        self.frames * FEATURES + self.command_blur.map_or(0, |blur| blur.len())
-    }
+impl Section for DiscriminatorConfig {
+    const NAME: &'static str = "discriminator";
 
-    /// Refuses the first value that learning cannot work with.
-    pub fn validate(&self) -> Checked {
+    fn validate(&self) -> Checked {
         Check(Ok(()))
             .layers("hidden", &self.hidden)
             .that(
@@ -142,5 +139,12 @@ impl DiscriminatorConfig {
             .positive("floors.joint_position", self.floors.joint_position)
             .positive("floors.joint_velocity", self.floors.joint_velocity)
             .0
+    }
+}
+
+impl DiscriminatorConfig {
+    /// Numbers that it sees of a window: `[frames][53]`, then the command if it sees that.
+    pub fn width(&self) -> usize {
+        self.frames * FEATURES + self.command_blur.map_or(0, |blur| blur.len())
     }
 }

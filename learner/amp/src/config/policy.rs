@@ -1,11 +1,12 @@
 //! `[policy]` and `[exploration]`: what acts, and how widely it tries.
 
 use super::Check;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use vocabulary::{Checked, Ramp};
+use vocabulary::{Checked, Ramp, Section};
 
 /// `[policy]`: sizes of actor and critic, and what they see.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PolicyConfig {
     /// Widths of the actor's hidden layers (ELU). The recipe's 256-128-64; published G1 trainers use 512-256-128.
@@ -21,7 +22,7 @@ pub struct PolicyConfig {
 }
 
 /// `[exploration]`: the standard deviation σ of actions around the policy's mean, in units of actions.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ExplorationConfig {
     /// `scheduled` follows the samples, `learned` is adapted by PPO from where `sigma` begins.
@@ -40,7 +41,7 @@ pub struct ExplorationConfig {
 }
 
 /// Choices of [`ExplorationConfig::kind`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ExplorationKind {
     /// σ by the number of samples.
@@ -74,9 +75,10 @@ impl Default for ExplorationConfig {
     }
 }
 
-impl PolicyConfig {
-    /// Refuses the first value that learning cannot work with.
-    pub fn validate(&self) -> Checked {
+impl Section for PolicyConfig {
+    const NAME: &'static str = "policy";
+
+    fn validate(&self) -> Checked {
         Check(Ok(()))
             .layers("hidden", &self.hidden)
             .layers("critic_hidden", &self.critic_hidden)
@@ -87,9 +89,10 @@ impl PolicyConfig {
     }
 }
 
-impl ExplorationConfig {
-    /// Refuses the first value that learning cannot work with.
-    pub fn validate(&self) -> Checked {
+impl Section for ExplorationConfig {
+    const NAME: &'static str = "exploration";
+
+    fn validate(&self) -> Checked {
         Check(Ok(()))
             .ramp("sigma", &self.sigma, Check::at_least_a_millionth)
             .at_least_a_millionth("waist_factor", self.waist_factor)

@@ -1,11 +1,12 @@
 //! `[ppo]`: how the policy is improved.
 
 use super::Check;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use vocabulary::{Checked, Ramp};
+use vocabulary::{Checked, Ramp, Section};
 
 /// `[ppo]`: how the policy is improved.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PpoConfig {
     /// γ, discount per 20 ms step. 0.99 in all published G1 trainers.
@@ -47,7 +48,7 @@ pub struct PpoConfig {
     pub advantage_normalization: AdvantageNormalization,
     /// Share of each minibatch that is replaced by its left–right mirror image. The recipe's half.
     pub mirrored_share: Ramp<f32>,
-    /// Samples at first of which the critic alone learns: for a policy that comes without critic and optimizer, and would
+    /// How long the critic alone learns at first, samples: for a policy that comes without critic and optimizer, and would
     /// be led astray by a new one. Default 0; `ampco train --from` a shipped policy makes it a million.
     pub critic_first: f64,
     /// Weight of the symmetry loss: how far the actor, shown the mirror image of a row, is off the mirror image of what
@@ -62,7 +63,7 @@ pub struct PpoConfig {
 }
 
 /// Choices of [`PpoConfig::schedule`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RateSchedule {
     /// The rate stays.
@@ -74,7 +75,7 @@ pub enum RateSchedule {
 }
 
 /// Choices of [`PpoConfig::advantage_normalization`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AdvantageNormalization {
     /// All rows of the iteration.
@@ -115,30 +116,10 @@ impl Default for PpoConfig {
     }
 }
 
-impl PpoConfig {
-    /// Whether any rows are seen mirrored, at any time of the run.
-    pub fn mirrors(&self) -> bool {
-        let some = self.mirrored_share.moves() || self.mirrored_share.now() > 0.0;
-        some || self.symmetry_weight > 0.0
-    }
+impl Section for PpoConfig {
+    const NAME: &'static str = "ppo";
 
-    /// Share of each minibatch that is mirrored after `samples`.
-    pub fn mirrored_share_at(&self, samples: u64) -> f32 {
-        self.mirrored_share.at(samples as f64)
-    }
-
-    /// Whether the critic alone learns after `samples`.
-    pub fn critic_alone_at(&self, samples: u64) -> bool {
-        (samples as f64) < self.critic_first
-    }
-
-    /// Mean KL divergence that the rate is steered to after `samples`.
-    pub fn kl_target_at(&self, samples: u64) -> f32 {
-        self.kl_target.at_logarithmic(samples as f64)
-    }
-
-    /// Refuses the first value that learning cannot work with.
-    pub fn validate(&self) -> Checked {
+    fn validate(&self) -> Checked {
         Check(Ok(()))
             .share("gamma", self.gamma)
             .share("lambda", self.lambda)
@@ -182,6 +163,29 @@ impl PpoConfig {
             .share("symmetry_share", self.symmetry_share)
             .count("threads", self.threads, 256)
             .0
+    }
+}
+
+impl PpoConfig {
+    /// Whether any rows are seen mirrored, at any time of the run.
+    pub fn mirrors(&self) -> bool {
+        let some = self.mirrored_share.moves() || self.mirrored_share.now() > 0.0;
+        some || self.symmetry_weight > 0.0
+    }
+
+    /// Share of each minibatch that is mirrored after `samples`.
+    pub fn mirrored_share_at(&self, samples: u64) -> f32 {
+        self.mirrored_share.at(samples as f64)
+    }
+
+    /// Whether the critic alone learns after `samples`.
+    pub fn critic_alone_at(&self, samples: u64) -> bool {
+        (samples as f64) < self.critic_first
+    }
+
+    /// Mean KL divergence that the rate is steered to after `samples`.
+    pub fn kl_target_at(&self, samples: u64) -> f32 {
+        self.kl_target.at_logarithmic(samples as f64)
     }
 }
 

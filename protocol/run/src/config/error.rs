@@ -33,6 +33,14 @@ pub enum ConfigError {
         /// What the file is instead, or line, column, what the parser said and a piece of the line.
         message: String,
     },
+    /// A preset that lies on nothing that there is, or on itself, or takes away what is not there.
+    #[error("{origin}: {}", said(problem))]
+    Preset {
+        /// The file or preset.
+        origin: String,
+        /// What is wrong, and what to write instead.
+        problem: String,
+    },
     /// `--set` was given something that is not `key=value`.
     #[error("--set {}: {}", line(given), said(problem))]
     Assignment {

@@ -1,7 +1,8 @@
 //! Keys that are spelt otherwise now: an older file is refused with the new spelling.
 
 /// Section and key as they were, and how the same is said now.
-const MOVED: [(&str, &str, &str); 19] = [
+const MOVED: [(&str, &str, &str); 30] = [
+    ("task", "physics", "fleet.physics = \"batched\""),
     ("task", "kernel", "task.reward.track.kernel = 2.0"),
     ("task", "wide_kernel", "task.reward.track_wide.kernel = 2.0"),
     (
@@ -51,11 +52,48 @@ const MOVED: [(&str, &str, &str); 19] = [
         "mirrored_fade",
         "ppo.mirrored_share = { from = 0.5, to = 0.0, samples = [1e6, 2e6] }",
     ),
+    ("randomization", "mass_range", MASS),
+    ("randomization", "friction_range", FRICTION),
+    (
+        "randomization",
+        "com_range",
+        "randomization.com_offset = { range = [-0.1, 0.1] }",
+    ),
+    ("randomization", "impulse_range", IMPULSE),
+    ("randomization", "impulse_seconds", IMPULSE),
+    (
+        "randomization",
+        "linear_velocity_range",
+        "randomization.linear_velocity_noise = { range = [-0.1, 0.1] }",
+    ),
+    (
+        "randomization",
+        "angular_velocity_range",
+        "randomization.angular_velocity_noise = { range = [-0.2, 0.2] }",
+    ),
+    (
+        "randomization",
+        "gravity_range",
+        "randomization.gravity_noise = { range = [-0.05, 0.05] }",
+    ),
+    (
+        "randomization",
+        "joint_position_range",
+        "randomization.joint_position_noise = { range = [-0.01, 0.01] }",
+    ),
+    (
+        "randomization",
+        "joint_velocity_range",
+        "randomization.joint_velocity_noise = { range = [-1.5, 1.5] }",
+    ),
     ("randomization", "from_samples", STRENGTH),
     ("randomization", "to_samples", STRENGTH),
 ];
 
 const SIGMA: &str = "exploration.sigma = { from = 0.6, to = 0.3, samples = [1e6, 3e6] }";
+const MASS: &str = "randomization.mass_variation = { range = [-0.5, 0.5] }";
+const FRICTION: &str = "randomization.friction = { range = [0.5, 1.0] }";
+const IMPULSE: &str = "randomization.impulse = { range = [0.0, 0.5], seconds = [5.0, 10.0] }";
 const STRENGTH: &str = "randomization.strength = { from = 0.0, to = 1.0, samples = [0.0, 3e6] }";
 
 /// The keys that moved, with an example of how each is said now.

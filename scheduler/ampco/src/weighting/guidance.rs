@@ -17,7 +17,7 @@ pub fn task_weight(style_reward: f32, ceiling: f32) -> f32 {
 }
 
 /// What R* is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CeilingKind {
     /// 1, the largest value that the reward can take.

@@ -19,7 +19,7 @@ fn timeouts_are_staggered_and_then_a_full_episode_apart() {
             termination: of_steps(12, staggered),
             ..task.clone()
         };
-        let mut fleet = fleet(&task, &RandomizationConfig::none(), 6, 2);
+        let mut fleet = fleet(&task, &RandomizationConfig::default(), 6, 2);
         let mut ended = vec![Vec::new(); 6];
         for t in 1..=24 {
             let out = step(&mut fleet, &[0.0; 6 * ACTION]);
@@ -46,8 +46,17 @@ fn limp_robots_fall_and_their_episode_ends() {
     let mut gains = Gains::of_the_robot();
     gains.effort = [0.0; JOINTS];
     let task = TaskConfig::default();
-    let none = RandomizationConfig::none();
-    let mut fleet = Fleet::with_gains(&task, &none, Starts::default(), 1, 4, gains).unwrap();
+    let none = RandomizationConfig::default();
+    let mut fleet = Fleet::with_gains(
+        Physics::Rapier,
+        &task,
+        &none,
+        Starts::default(),
+        1,
+        4,
+        gains,
+    )
+    .unwrap();
     let fall = (0..100)
         .map(|_| step(&mut fleet, &[0.0; ACTION]))
         .find(|out| out.ends[0] != 0.0)
@@ -69,7 +78,6 @@ fn every_end_tells_its_cause() {
 fn tells_causes(physics: Physics) {
     // Told to walk at 1 m/s: a robot that stands is a fifth of it off after one step of a mean over 0.1 s, and 0.05 is allowed.
     let strict = TaskConfig {
-        physics,
         command: CommandConfig {
             forward: [1.0, 1.0].into(),
             ..CommandConfig::default()
@@ -97,7 +105,7 @@ fn tells_causes(physics: Physics) {
     let mut leaning = RobotState::standing();
     leaning.orientation = UnitQuaternion::from_euler_angles(0.0, FRAC_PI_3, 0.0);
     let end = |task: &TaskConfig, state: &RobotState, action: f32| {
-        let mut fleet = fleet(task, &RandomizationConfig::none(), 1, 4);
+        let mut fleet = fleet_in(physics, task, &RandomizationConfig::default(), 1, 4);
         let _ = fleet.bodies.begin(0, &Variation::NOMINAL, state);
         step(&mut fleet, &[action; ACTION]).ends[0]
     };
@@ -129,7 +137,7 @@ fn starts_match_their_clip_in_the_share_asked_for() {
             },
             ..TaskConfig::default()
         };
-        let fleet = fleet(&task, &RandomizationConfig::none(), 20, 1);
+        let fleet = fleet(&task, &RandomizationConfig::default(), 20, 1);
         for i in 0..20 {
             assert_eq!(fleet.command(i) == [0.8, 0.0, 0.0], share == 1.0);
         }

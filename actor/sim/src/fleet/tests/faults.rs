@@ -8,8 +8,8 @@ fn broken_numbers_reset_and_never_leave() {
 }
 
 fn resets_what_broke(physics: Physics) {
-    let (task, randomization) = eventful_in(physics);
-    let mut fleet = fleet(&task, &randomization, 2, 1);
+    let (task, randomization) = eventful();
+    let mut fleet = fleet_in(physics, &task, &randomization, 2, 1);
     let mut asked = vec![0.0; 2 * ACTION];
     asked[5] = f32::NAN;
     let out = step(&mut fleet, &asked);
@@ -39,8 +39,8 @@ fn violent_actions_leave_finite_numbers() {
 }
 
 fn stays_finite(physics: Physics) {
-    let (task, randomization) = eventful_in(physics);
-    let mut fleet = fleet(&task, &randomization, 4, 13);
+    let (task, randomization) = eventful();
+    let mut fleet = fleet_in(physics, &task, &randomization, 4, 13);
     let mut actions = Actions::new(5);
     for size in [1.0, 10.0, 1e3, 1e6] {
         for _ in 0..30 {

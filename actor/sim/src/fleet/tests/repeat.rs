@@ -8,10 +8,10 @@ fn same_seed_same_bits_whoever_else_is_in_the_fleet() {
 }
 
 fn same_bits(physics: Physics) {
-    let (task, randomization) = eventful_in(physics);
-    let mut five = fleet(&task, &randomization, 5, 11);
-    let mut two = fleet(&task, &randomization, 2, 11);
-    let mut other = fleet(&task, &randomization, 2, 12);
+    let (task, randomization) = eventful();
+    let mut five = fleet_in(physics, &task, &randomization, 5, 11);
+    let mut two = fleet_in(physics, &task, &randomization, 2, 11);
+    let mut other = fleet_in(physics, &task, &randomization, 2, 12);
     assert_ne!(two.observations(), other.observations());
     let mut actions = Actions::new(1);
     let mut resets = 0;
@@ -38,14 +38,14 @@ fn a_restored_fleet_continues_bit_by_bit_across_resets() {
 }
 
 fn continues(physics: Physics) {
-    let (task, randomization) = eventful_in(physics);
-    let mut original = fleet(&task, &randomization, 3, 5);
+    let (task, randomization) = eventful();
+    let mut original = fleet_in(physics, &task, &randomization, 3, 5);
     let mut actions = Actions::new(2);
     for _ in 0..33 {
         step(&mut original, &actions.draw(3, 1.0));
     }
     let bytes = original.save();
-    let mut restored = fleet(&task, &randomization, 3, 99);
+    let mut restored = fleet_in(physics, &task, &randomization, 3, 99);
     restored.restore(&bytes).unwrap();
     assert_eq!(restored.observations(), original.observations());
     assert_eq!(restored.save(), bytes);
@@ -78,9 +78,8 @@ fn bytes_that_do_not_fit_are_refused_and_change_nothing() {
         Err(SimError::Snapshot { bytes: 100, .. })
     ));
     assert_eq!(two.save(), before);
-    let (task, randomization) = eventful_in(Physics::Batched);
-    let other = fleet(&task, &randomization, 2, 1);
+    let other = fleet_in(Physics::Batched, &task, &randomization, 2, 1);
     let error = two.restore(&other.save()).unwrap_err();
-    assert!(error.to_string().contains("task.physics"), "{error}");
+    assert!(error.to_string().contains("fleet.physics"), "{error}");
     assert_eq!(two.save(), before);
 }

@@ -10,9 +10,8 @@ use g1::kinematics;
 use g1::links::LEFT_FOOT;
 
 /// Straight ahead, and nobody falls.
-fn ahead(physics: Physics) -> TaskConfig {
+fn ahead() -> TaskConfig {
     TaskConfig {
-        physics,
         command: CommandConfig {
             forward: [0.5, 0.5].into(),
             pure_share: 1.0,
@@ -61,7 +60,7 @@ fn reward_and_error_are_those_of_the_state_reached_under_the_old_command() {
         },
         ..TaskConfig::default()
     };
-    let mut fleet = fleet(&task, &RandomizationConfig::none(), 1, 9);
+    let mut fleet = fleet(&task, &RandomizationConfig::default(), 1, 9);
     for _ in 0..5 {
         let command = fleet.command(0);
         let out = step(&mut fleet, &[0.0; ACTION]);
@@ -86,8 +85,14 @@ fn reward_and_error_are_those_of_the_state_reached_under_the_old_command() {
 
 #[test]
 fn terms_are_told_since_they_were_asked_for_and_broken_steps_are_none() {
-    let task = ahead(Physics::Batched);
-    let mut fleet = fleet(&task, &RandomizationConfig::none(), 2, 9);
+    let task = ahead();
+    let mut fleet = fleet_in(
+        Physics::Batched,
+        &task,
+        &RandomizationConfig::default(),
+        2,
+        9,
+    );
     assert_eq!(fleet.take_terms(), []);
     let mut asked = [0.0; 2 * ACTION];
     // The second robot's first step breaks: it pays nothing, and no term was looked at.
@@ -115,7 +120,7 @@ fn terms_are_told_since_they_were_asked_for_and_broken_steps_are_none() {
 #[test]
 fn the_share_of_long_steps_is_paid_to_who_stands_on_one_foot() {
     for physics in ENGINES {
-        let plain = ahead(physics);
+        let plain = ahead();
         let paying = TaskConfig {
             gate: long_steps(SingleStance {
                 share: 0.5.into(),
@@ -125,7 +130,7 @@ fn the_share_of_long_steps_is_paid_to_who_stands_on_one_foot() {
             ..plain.clone()
         };
         let run = |task: &TaskConfig| {
-            let mut fleet = fleet(task, &RandomizationConfig::none(), 1, 9);
+            let mut fleet = fleet_in(physics, task, &RandomizationConfig::default(), 1, 9);
             let mut rows = Vec::new();
             for _ in 0..25 {
                 let out = step(&mut fleet, &left_foot_up());
@@ -170,9 +175,9 @@ fn a_foot_is_paid_by_its_own_height_in_the_world() {
                 lift: Some(lift),
                 ..SingleStance::default()
             }),
-            ..ahead(physics)
+            ..ahead()
         };
-        let mut fleet = fleet(&task, &RandomizationConfig::none(), 1, 9);
+        let mut fleet = fleet_in(physics, &task, &RandomizationConfig::default(), 1, 9);
         let feet = Footing::default();
         let (mut one_foot, mut high) = (0, 0);
         for _ in 0..25 {
@@ -180,7 +185,7 @@ fn a_foot_is_paid_by_its_own_height_in_the_world() {
             let out = step(&mut fleet, &left_foot_up());
             let state = fleet.state(0);
             let moment = Moment::new(&command, state, out.energies[0], &feet);
-            let obeys = ahead(physics).pay(&moment);
+            let obeys = ahead().pay(&moment);
             let [left, right] = [0, 1].map(|foot| out.foot_forces[foot] > CONTACT_FORCE);
             let bodies = kinematics::forward_state(state);
             let height = kinematics::lowest_sole_point(&bodies, LEFT_FOOT);

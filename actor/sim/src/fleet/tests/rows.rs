@@ -5,7 +5,7 @@ use super::*;
 #[test]
 fn features_go_from_step_to_step_and_stop_at_an_episodes_end() {
     let (task, _) = eventful();
-    let randomization = RandomizationConfig::none();
+    let randomization = RandomizationConfig::default();
     let mut fleet = fleet(&task, &randomization, 4, 3);
     let mut actions = Actions::new(3);
     let (mut falls, mut timeouts, mut steps) = (0, 0, [0.0; 4]);
@@ -53,7 +53,7 @@ fn features_go_from_step_to_step_and_stop_at_an_episodes_end() {
 #[test]
 fn observations_show_the_command_and_the_previous_action() {
     let task = TaskConfig::default();
-    let mut fleet = fleet(&task, &RandomizationConfig::none(), 2, 8);
+    let mut fleet = fleet(&task, &RandomizationConfig::default(), 2, 8);
     let asked = Actions::new(4).draw(2, 0.3);
     step(&mut fleet, &asked);
     for i in 0..2 {
@@ -80,7 +80,7 @@ fn observations_show_the_command_and_the_previous_action() {
 fn the_last_step_is_told_also_where_an_episode_ended() {
     let (mut task, _) = eventful();
     task.termination = of_steps(3, false);
-    let mut fleet = fleet(&task, &RandomizationConfig::none(), 2, 4);
+    let mut fleet = fleet(&task, &RandomizationConfig::default(), 2, 4);
     assert_eq!(fleet.last_step(1).state, *fleet.state(1));
     assert_eq!(fleet.last_step(1).exertion, Exertion::default());
     let mut actions = Actions::new(4);

@@ -13,14 +13,14 @@ fn noise_is_in_observations_only() {
         ..TaskConfig::default()
     };
     let noisy = RandomizationConfig {
-        mass_variation: false,
-        friction: false,
-        com_offset: false,
-        impulse: false,
-        ..RandomizationConfig::default()
+        mass_variation: None,
+        friction: None,
+        com_offset: None,
+        impulse: None,
+        ..RandomizationConfig::table_one()
     };
     let mut blurred = fleet(&task, &noisy, 1, 6);
-    let mut exact = fleet(&task, &RandomizationConfig::none(), 1, 6);
+    let mut exact = fleet(&task, &RandomizationConfig::default(), 1, 6);
     let a = step(&mut blurred, &[0.1; ACTION]);
     let b = step(&mut exact, &[0.1; ACTION]);
     assert_eq!(a.next_features, b.next_features);
@@ -36,13 +36,14 @@ fn noise_is_in_observations_only() {
 fn pushes_come_at_their_time() {
     let task = TaskConfig::default();
     let pushed = RandomizationConfig {
-        impulse: true,
-        impulse_range: [0.5, 0.5],
-        impulse_seconds: [0.1, 0.1], // every fifth step
-        ..RandomizationConfig::none()
+        impulse: Some(Push {
+            range: [0.5, 0.5],
+            seconds: [0.1, 0.1], // every fifth step
+        }),
+        ..RandomizationConfig::default()
     };
     let mut pushed = fleet(&task, &pushed, 1, 6);
-    let mut still = fleet(&task, &RandomizationConfig::none(), 1, 6);
+    let mut still = fleet(&task, &RandomizationConfig::default(), 1, 6);
     for t in 1..=5 {
         step(&mut pushed, &[0.0; ACTION]);
         step(&mut still, &[0.0; ACTION]);
@@ -57,11 +58,14 @@ fn the_table_leaves_its_share_of_robots_alone() {
     let task = TaskConfig::default();
     let shared = RandomizationConfig {
         plain_share: 0.5,
-        impulse_seconds: [0.1, 0.1],
-        ..RandomizationConfig::default()
+        impulse: Some(Push {
+            range: [0.0, 0.5],
+            seconds: [0.1, 0.1],
+        }),
+        ..RandomizationConfig::table_one()
     };
     let mut shared = fleet(&task, &shared, 4, 6);
-    let mut plain = fleet(&task, &RandomizationConfig::none(), 4, 6);
+    let mut plain = fleet(&task, &RandomizationConfig::default(), 4, 6);
     for _ in 0..6 {
         step(&mut shared, &[0.0; 4 * ACTION]);
         step(&mut plain, &[0.0; 4 * ACTION]);
@@ -76,7 +80,7 @@ fn the_table_leaves_its_share_of_robots_alone() {
     }
     let wrong = RandomizationConfig {
         plain_share: 1.5,
-        ..RandomizationConfig::default()
+        ..RandomizationConfig::table_one()
     };
     let error = wrong.validate().unwrap_err().to_string();
     assert!(error.contains("plain_share"), "{error}");
@@ -85,8 +89,8 @@ fn the_table_leaves_its_share_of_robots_alone() {
 #[test]
 fn a_push_from_outside_moves_the_robot_that_it_is_meant_for() {
     let (task, _) = eventful();
-    let mut pushed = fleet(&task, &RandomizationConfig::none(), 2, 6);
-    let mut left_alone = fleet(&task, &RandomizationConfig::none(), 2, 6);
+    let mut pushed = fleet(&task, &RandomizationConfig::default(), 2, 6);
+    let mut left_alone = fleet(&task, &RandomizationConfig::default(), 2, 6);
     pushed.push(0, [0.0, 0.5, 0.0]);
     let rest = [0.0; 2 * ACTION];
     step(&mut pushed, &rest);

@@ -1,0 +1,120 @@
+//! What a run of an older program says, in today's words.
+//!
+//! Only for files that a program has written, which hold every value: a run made yesterday is gone on with and judged
+//! today. What a person writes is refused with the new spelling instead (see `moved`), and so is here what has no meaning
+//! any more.
+
+use toml::{Table, Value};
+
+/// Rows of Table I: the key that switched one, and what its other keys are called within it.
+const ROWS: [(&str, &[(&str, &str)]); 9] = [
+    ("mass_variation", &[("mass_range", "range")]),
+    ("friction", &[("friction_range", "range")]),
+    ("com_offset", &[("com_range", "range")]),
+    (
+        "impulse",
+        &[("impulse_range", "range"), ("impulse_seconds", "seconds")],
+    ),
+    (
+        "linear_velocity_noise",
+        &[("linear_velocity_range", "range")],
+    ),
+    (
+        "angular_velocity_noise",
+        &[("angular_velocity_range", "range")],
+    ),
+    ("gravity_noise", &[("gravity_range", "range")]),
+    ("joint_position_noise", &[("joint_position_range", "range")]),
+    ("joint_velocity_noise", &[("joint_velocity_range", "range")]),
+];
+
+/// Says in today's words what can be said in them; the rest stays.
+pub(super) fn in_todays_words(table: &mut Table) {
+    physics(table);
+    if let Some(Value::Table(randomization)) = table.get_mut("randomization") {
+        rows(randomization);
+    }
+}
+
+/// `task.physics` is `fleet.physics`.
+fn physics(table: &mut Table) {
+    let Some(Value::Table(task)) = table.get_mut("task") else {
+        return;
+    };
+    let Some(engine) = task.remove("physics") else {
+        return;
+    };
+    let fleet = table.entry("fleet").or_insert(Value::Table(Table::new()));
+    if let Value::Table(fleet) = fleet {
+        fleet.entry("physics").or_insert(engine);
+    }
+}
+
+/// A row that was switched on is a table; one that was not is none.
+fn rows(randomization: &mut Table) {
+    for (row, keys) in ROWS {
+        let Some(Value::Boolean(on)) = randomization.get(row) else {
+            continue;
+        };
+        let on = *on;
+        randomization.remove(row);
+        let parts = keys.iter().filter_map(|(old, now)| {
+            let value = randomization.remove(*old)?;
+            Some(((*now).to_owned(), value))
+        });
+        let parts: Table = parts.collect();
+        if on {
+            randomization.insert(row.to_owned(), Value::Table(parts));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn today(text: &str) -> Table {
+        let mut table = toml::from_str(text).unwrap();
+        in_todays_words(&mut table);
+        table
+    }
+
+    #[test]
+    fn the_engine_is_of_the_fleet() {
+        let old = "[task]\nphysics = \"batched\"\n[task.reward]\n[fleet]\nsteps = 8";
+        let new = "[task.reward]\n[fleet]\nsteps = 8\nphysics = \"batched\"";
+        assert_eq!(today(old), toml::from_str(new).unwrap());
+        assert_eq!(
+            today("[task]\nphysics = \"batched\"")["fleet"]["physics"].as_str(),
+            Some("batched")
+        );
+    }
+
+    #[test]
+    fn rows_that_were_on_are_tables_and_others_are_none() {
+        let old = "[randomization]\nplain_share = 0.3\n\
+                   friction = true\nfriction_range = [0.5, 1.0]\n\
+                   gravity_noise = false\ngravity_range = [-0.1, 0.1]\n\
+                   impulse = true\nimpulse_range = [0.0, 0.9]\nimpulse_seconds = [1.5, 4.0]";
+        let new = "[randomization]\nplain_share = 0.3\n\
+                   friction = { range = [0.5, 1.0] }\n\
+                   impulse = { range = [0.0, 0.9], seconds = [1.5, 4.0] }";
+        assert_eq!(today(old), toml::from_str(new).unwrap());
+        // Today's words stay.
+        assert_eq!(today(new), toml::from_str(new).unwrap());
+    }
+
+    #[test]
+    fn what_makes_no_sense_stays_to_be_refused() {
+        for odd in [
+            "task = 3",
+            "[task]\nphysics = 1\n[fleet]",
+            "fleet = 1\n[task]\nphysics = \"rapier\"",
+            "randomization = []",
+        ] {
+            let _ = today(odd);
+        }
+        let kept = today("[randomization]\nfriction = \"on\"");
+        assert_eq!(kept["randomization"]["friction"].as_str(), Some("on"));
+    }
+}
