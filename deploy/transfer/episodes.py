@@ -14,28 +14,28 @@ class Randomization:
     def __init__(self, table, random):
         self.table, self.random = table, random
 
-    def _uniform(self, row, size=None):
-        return self.random.uniform(*self.table[row], size=size)
+    def _uniform(self, row, size=None, key="range"):
+        return self.random.uniform(*self.table[row][key], size=size)
 
     def variation(self):
         """Robot and floor of an episode, or nothing."""
         if self.table is None:
             return None
         return {
-            "torso_mass": self._uniform("mass_range"),
-            "torso_com": self._uniform("com_range", 3),
-            "friction": self._uniform("friction_range"),
+            "torso_mass": self._uniform("mass_variation"),
+            "torso_com": self._uniform("com_offset", 3),
+            "friction": self._uniform("friction"),
         }
 
     def push_after(self, policy_hz):
         """Control steps until the next push."""
         if self.table is None:
             return np.inf
-        return max(1, round(self._uniform("impulse_seconds") * policy_hz))
+        return max(1, round(self._uniform("impulse", key="seconds") * policy_hz))
 
     def push(self):
         """Change of velocity, world frame, m/s."""
-        size = self._uniform("impulse_range", 2) * self.random.choice([-1.0, 1.0], 2)
+        size = self._uniform("impulse", 2) * self.random.choice([-1.0, 1.0], 2)
         return np.array([*size, 0.0])
 
     def blur(self, observation, policy):
@@ -43,11 +43,11 @@ class Randomization:
         if self.table is None:
             return observation
         for term, row in (
-            ("linear_velocity", "linear_velocity_range"),
-            ("angular_velocity", "angular_velocity_range"),
-            ("projected_gravity", "gravity_range"),
-            ("joint_position", "joint_position_range"),
-            ("joint_velocity", "joint_velocity_range"),
+            ("linear_velocity", "linear_velocity_noise"),
+            ("angular_velocity", "angular_velocity_noise"),
+            ("projected_gravity", "gravity_noise"),
+            ("joint_position", "joint_position_noise"),
+            ("joint_velocity", "joint_velocity_noise"),
         ):
             place = policy.slice(term)
             observation[place] += self._uniform(row, place.stop - place.start)

@@ -8,8 +8,8 @@ use rustix::process::Signal;
 use crate::harness::{Process, Runs, metrics, program, until_iteration};
 
 const TWO: &str = "title = \"Two\"\n\
-    [[stages]]\nname = \"first\"\npreset = \"smoke\"\niterations = 6\n\
-    [[stages]]\nname = \"second\"\npreset = \"smoke\"\niterations = 40\nset = [\"ppo.epochs=1\"]\n";
+    [[stages]]\nname = \"first\"\non = \"smoke\"\niterations = 6\n\
+    [[stages]]\nname = \"second\"\niterations = 40\nppo.epochs = 1\n";
 
 #[test]
 fn stages_go_on_where_they_were_stopped_and_begin_where_the_one_before_ended() {

@@ -114,7 +114,6 @@ impl LearnerBench {
         let means = vec![0.0; ROWS * ACTION];
         let sigma = [1.0; ACTION];
         let log_probs = standard_log_densities(&actions);
-        let zeros = vec![0.0; ROWS];
         let rows = Rows {
             observations: &observations,
             mirrored: &observations,
@@ -126,7 +125,6 @@ impl LearnerBench {
             log_probs: &log_probs,
             advantages: &advantages,
             returns: &advantages,
-            values: &zeros,
         };
         self.median_ms(|| {
             ppo.update(&rows, &sigma, &mut rng)

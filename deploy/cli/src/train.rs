@@ -31,7 +31,7 @@ use resumed::GoingOn;
 /// anything starts. A live line shows how it goes; metrics and logs are in the run's folder.
 #[derive(Debug, Args)]
 pub(crate) struct Train {
-    /// Preset: ampco, one of the methods it is compared with, smoke, or a TOML file; with --resume it is laid over the
+    /// Preset: ampco, one of the methods it is compared with, smoke, or a TOML file (- reads it from standard input); with --resume it is laid over the
     /// run's own configuration [default: ampco]
     #[arg(long, value_name = "NAME|FILE")]
     preset: Option<String>,

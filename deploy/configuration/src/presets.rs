@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use run::Config;
 use run::config::{Source, lay};
 use terminal::failure::usage;
@@ -39,6 +39,9 @@ const EMBEDDED: [(&str, &str); 16] = [
     ("smoke", include_str!("../../presets/smoke.toml")),
 ];
 
+/// As whose name a preset is read from standard input.
+const STANDARD_INPUT: &str = "-";
+
 /// A preset with all that it lies on.
 #[derive(Debug)]
 pub struct Preset {
@@ -55,11 +58,12 @@ pub fn names() -> Vec<&'static str> {
     EMBEDDED.iter().map(|(name, _)| *name).collect()
 }
 
-/// One of ours by its name, else a file.
+/// One of ours by its name, else a file; `-` is standard input.
 pub fn find(given: &str) -> Result<Preset> {
-    let source = open(given, None).map_err(usage)?;
+    let source = top(given)?;
     let name = match &source.folder {
         Some(_) => run_stem(Path::new(&source.origin)),
+        None if given == STANDARD_INPUT => "run".to_owned(),
         None => given.to_owned(),
     };
     let (mut config, origin) = (Config::default(), source.origin.clone());
@@ -73,11 +77,24 @@ pub fn find(given: &str) -> Result<Preset> {
 
 /// Lays a preset, and all that it lies on, over a configuration.
 pub fn lay_over(config: &mut Config, given: &str) -> Result<()> {
-    Ok(lay(config, open(given, None).map_err(usage)?, open)?)
+    Ok(lay(config, top(given)?, open)?)
+}
+
+/// What was typed: a name, a file, or what is written to us.
+fn top(given: &str) -> Result<Source> {
+    if given != STANDARD_INPUT {
+        return open(given, None).map_err(usage);
+    }
+    let text = std::io::read_to_string(std::io::stdin()).context("reading standard input")?;
+    Ok(Source {
+        origin: "standard input".to_owned(),
+        text,
+        folder: None,
+    })
 }
 
 /// The text of one of ours by its name, else of a file, whose relative path starts from `folder`.
-fn open(given: &str, folder: Option<&Path>) -> Result<Source, String> {
+pub fn open(given: &str, folder: Option<&Path>) -> Result<Source, String> {
     if let Some((name, text)) = EMBEDDED.iter().find(|(name, _)| *name == given) {
         return Ok(Source {
             origin: format!("preset {name}"),

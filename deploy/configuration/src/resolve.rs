@@ -179,6 +179,12 @@ mod tests {
             resolve(&mut defaults).unwrap();
             assert!(difference(&config, &defaults).is_some(), "{now}");
         }
+        for gone in run::config::gone() {
+            let (section, key) = gone.split_once('.').unwrap();
+            let said = complaint(&format!("[{section}]\n{key} = 1"));
+            let named = said.starts_with(&format!("my.toml: unknown key `{key}` in [{section}]"));
+            assert!(named && said.contains("take the line away"), "{said}");
+        }
         let said = complaint("[task.curriculum]\nkernel = 4.0");
         assert!(
             said.starts_with("my.toml: unknown key `curriculum`"),

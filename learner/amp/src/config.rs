@@ -7,9 +7,12 @@ mod discriminator;
 mod policy;
 mod ppo;
 
-pub use discriminator::{DiscriminatorConfig, Floors};
+pub use discriminator::DiscriminatorConfig;
+pub(crate) use discriminator::{DECAY, FEATURE_CLIP, HEAD_DECAY, REPLAY_SHARE, floor};
 pub use policy::{ExplorationConfig, ExplorationKind, PolicyConfig};
-pub use ppo::{AdvantageNormalization, PpoConfig, RateSchedule};
+pub(crate) use policy::{LAST_GAIN, LEARNED_SIGMA, OBSERVATION_FLOOR};
+pub(crate) use ppo::{GRADIENT_NORM, GREATEST_RATE, KL_BAND, LEAST_RATE, RATE_FACTOR};
+pub use ppo::{PpoConfig, RateSchedule};
 
 use std::fmt::Debug;
 use vocabulary::{Invalid, Ramp, Section};
@@ -113,21 +116,13 @@ mod tests {
     #[test]
     fn a_section_says_only_its_differences() {
         let ppo: PpoConfig =
-            toml::from_str("epochs = 5\nvalue_clip = 0.2\nschedule = \"per_minibatch\"")
-                .expect("ppo");
-        assert_eq!(
-            (ppo.epochs, ppo.value_clip, ppo.minibatch),
-            (5, Some(0.2), 2048)
-        );
+            toml::from_str("epochs = 5\nschedule = \"per_minibatch\"").expect("ppo");
+        assert_eq!((ppo.epochs, ppo.minibatch), (5, 2048));
         assert_eq!(ppo.schedule, RateSchedule::PerMinibatch);
-        let judge: DiscriminatorConfig =
-            toml::from_str("floors = { height = 0.1 }").expect("discriminator");
-        assert_eq!(
-            (judge.floors.height, judge.floors.joint_velocity),
-            (0.1, 2.0)
-        );
+        let judge: DiscriminatorConfig = toml::from_str("frames = 4").expect("discriminator");
+        assert_eq!((judge.frames, judge.steps), (4, 3));
         assert!(toml::from_str::<PpoConfig>("epoch = 5").is_err());
-        assert!(toml::from_str::<DiscriminatorConfig>("floors = { hight = 0.1 }").is_err());
+        assert!(toml::from_str::<DiscriminatorConfig>("frame = 4").is_err());
     }
 
     #[test]

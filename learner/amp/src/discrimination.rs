@@ -3,7 +3,7 @@
 //! It sees normalised transitions; the gradient penalty is taken where it looks, that is with respect to normalised
 //! expert windows.
 
-use crate::config::DiscriminatorConfig;
+use crate::config::{DECAY, DiscriminatorConfig, FEATURE_CLIP, HEAD_DECAY, floor};
 use crate::error::Fault;
 use crate::inference::{self, CHUNK};
 use crate::losses;
@@ -79,26 +79,17 @@ impl Discriminator {
         let decay = vec![
             Decay {
                 part: 0..shape.head(),
-                factor: config.decay,
+                factor: DECAY,
             },
             Decay {
                 part: shape.head()..shape.len(),
-                factor: config.head_decay,
+                factor: HEAD_DECAY,
             },
         ];
-        let floors = features
-            .iter()
-            .map(|kind| match kind {
-                FeatureKind::Height => config.floors.height,
-                FeatureKind::LinearVelocity => config.floors.linear_velocity,
-                FeatureKind::AngularVelocity => config.floors.angular_velocity,
-                FeatureKind::JointPosition => config.floors.joint_position,
-                FeatureKind::JointVelocity => config.floors.joint_velocity,
-            })
-            .collect();
+        let floors = features.iter().map(|kind| floor(*kind)).collect();
         Self {
             adam: Adam::new(shape.len(), AdamConfig::default(), decay),
-            normalizer: Normalizer::new(floors, config.feature_clip),
+            normalizer: Normalizer::new(floors, FEATURE_CLIP),
             config: config.clone(),
             threads,
             shape,

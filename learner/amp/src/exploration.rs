@@ -1,6 +1,6 @@
 //! How wide actions are drawn around the policy's mean.
 
-use crate::config::{ExplorationConfig, ExplorationKind};
+use crate::config::{ExplorationConfig, ExplorationKind, LEARNED_SIGMA};
 use crate::robot::JointGroup;
 
 /// Standard deviation σ of each joint's action after `samples`.
@@ -17,7 +17,7 @@ pub fn sigma(
     match config.kind {
         ExplorationKind::Learned => log_sigma
             .iter()
-            .map(|log| log.exp().clamp(config.min_sigma, config.max_sigma))
+            .map(|log| log.exp().clamp(LEARNED_SIGMA[0], LEARNED_SIGMA[1]))
             .collect(),
         ExplorationKind::Scheduled => {
             let legs = config.sigma.at_logarithmic(samples as f64);

@@ -3,7 +3,7 @@
 mod stages;
 
 use crate::batch::Batch;
-use crate::config::{LearningConfig, PpoConfig, RateSchedule};
+use crate::config::{LearningConfig, OBSERVATION_FLOOR, PpoConfig};
 use crate::discrimination::Discriminator;
 use crate::error::Fault;
 use crate::ppo::Ppo;
@@ -66,7 +66,7 @@ impl Learning {
             config.ppo.threads,
             &mut generator,
         );
-        let floors = vec![config.policy.observation_floor; OBSERVATION];
+        let floors = vec![OBSERVATION_FLOOR; OBSERVATION];
         Ok(Self {
             core: Core {
                 ppo,
@@ -97,18 +97,12 @@ impl Learning {
 
     /// Takes over what the configuration says otherwise than `before`, that of the saved state which was loaded: the state
     /// has a rate of its own, which follows the KL divergence, and would go on with that. A rate or schedule that was
-    /// changed begins with the rate that is now given; changed limits bind at once.
+    /// changed begins with the rate that is now given.
     pub fn retune(&mut self, before: &PpoConfig) {
         let now = &self.config.ppo;
         let (_, _, rate) = self.core.ppo.state_mut();
         if (now.learning_rate, now.schedule) != (before.learning_rate, before.schedule) {
             *rate = now.learning_rate;
-        }
-        let limits = (now.min_learning_rate, now.max_learning_rate);
-        if limits != (before.min_learning_rate, before.max_learning_rate)
-            && now.schedule != RateSchedule::Fixed
-        {
-            *rate = rate.clamp(limits.0, limits.1);
         }
     }
 

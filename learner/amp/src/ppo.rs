@@ -8,7 +8,7 @@ mod step;
 
 use crate::LearningError;
 use crate::config::{
-    AdvantageNormalization, ExplorationKind, LearningConfig, PpoConfig, RateSchedule,
+    ExplorationKind, LAST_GAIN, LEARNED_SIGMA, LEAST_RATE, LearningConfig, PpoConfig, RateSchedule,
 };
 use crate::error::Fault;
 use crate::minibatch::{Order, split};
@@ -43,8 +43,6 @@ pub struct Rows<'a> {
     pub advantages: &'a [f32],
     /// Targets of the critic, `[row]`.
     pub returns: &'a [f32],
-    /// The critic's values before the update, `[row]`.
-    pub values: &'a [f32],
 }
 
 /// Figures of one update.
@@ -98,10 +96,10 @@ impl Ppo {
             1,
             Activation::Elu,
         );
-        let mut weights = orthogonal(&actor, hidden_gain, config.policy.last_gain, rng);
+        let mut weights = orthogonal(&actor, hidden_gain, LAST_GAIN, rng);
         weights.extend(orthogonal(&critic, hidden_gain, 1.0, rng));
         weights.extend(exploration::initial_log_sigma(&config.exploration, joints));
-        let limits = config.exploration.min_sigma.ln()..config.exploration.max_sigma.ln();
+        let limits = LEARNED_SIGMA[0].ln()..LEARNED_SIGMA[1].ln();
         Self {
             adam: Adam::new(weights.len(), AdamConfig::default(), vec![]),
             rate: config.ppo.learning_rate,
@@ -165,7 +163,7 @@ impl Ppo {
     pub(crate) fn begin_gently(&mut self) {
         // One that does not move would stay there for good.
         if self.config.schedule != RateSchedule::Fixed {
-            self.rate = self.config.min_learning_rate;
+            self.rate = LEAST_RATE;
         }
         self.adam = Adam::new(self.weights.len(), AdamConfig::default(), vec![]);
     }
@@ -207,7 +205,7 @@ impl Ppo {
     ) -> Result<PpoFigures, Fault> {
         let count = rows.advantages.len();
         let mut order = std::mem::take(&mut self.order);
-        let whole = normalization(rows.advantages.iter().copied());
+        let (shift, scale) = normalization(rows.advantages.iter().copied());
         let mut figures = PpoFigures::default();
         let mut steps = 0;
         let mut asymmetry = (0.0, 0);
@@ -217,13 +215,6 @@ impl Ppo {
             let minibatches = split(indices, self.config.minibatch);
             let mut kl = (0.0, 0);
             for indices in minibatches {
-                let (shift, scale) = match self.config.advantage_normalization {
-                    AdvantageNormalization::Batch => whole,
-                    AdvantageNormalization::Minibatch => {
-                        normalization(indices.iter().map(|i| rows.advantages[*i]))
-                    }
-                    AdvantageNormalization::None => (0.0, 1.0),
-                };
                 let minibatch = Minibatch {
                     rows,
                     indices,

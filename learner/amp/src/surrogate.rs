@@ -53,25 +53,11 @@ pub fn symmetry_loss(
     (distance.square().sum_dim(1) * weights).sum() * (0.5 / count as f32)
 }
 
-/// L = E (V − R)²,  or with a clip range E max((V − R)², (V_old + clip(V − V_old, ±ε) − R)²)
+/// L = E (V − R)²
 ///
 /// All `[n, 1]`, a part of `count` rows.
-pub fn value_loss(
-    values: Tensor<2>,
-    old_values: Tensor<2>,
-    returns: Tensor<2>,
-    clip: Option<f32>,
-    count: usize,
-) -> Tensor<1> {
-    let free = (values.clone() - returns.clone()).square();
-    let loss = match clip {
-        None => free,
-        Some(clip) => {
-            let near = old_values.clone() + (values - old_values).clamp(-clip, clip);
-            free.max_pair((near - returns).square())
-        }
-    };
-    loss.sum() / count as f32
+pub fn value_loss(values: Tensor<2>, returns: Tensor<2>, count: usize) -> Tensor<1> {
+    (values - returns).square().sum() / count as f32
 }
 
 /// Entropy of the Gaussian: Σᵢ (ln σᵢ + ½ + ½·ln 2π); `log_sigma` `[1, k]`.
@@ -175,19 +161,9 @@ mod tests {
 
     #[test]
     fn the_value_loss_by_hand() {
-        let loss = |clip| {
-            values(value_loss(
-                column(&[3.0, 0.5]),
-                column(&[1.0, 0.0]),
-                column(&[4.0, 0.0]),
-                clip,
-                2,
-            ))[0]
-        };
+        let loss = value_loss(column(&[3.0, 0.5]), column(&[4.0, 0.0]), 2);
         // (3−4)² + 0.5² = 1.25 over 2
-        assert!((loss(None) - 0.625).abs() < 1e-6);
-        // clipped to ±1: values 2 and 0.5: max(1, 4) + max(0.25, 0.25) = 4.25 over 2
-        assert!((loss(Some(1.0)) - 2.125).abs() < 1e-6);
+        assert!((values(loss)[0] - 0.625).abs() < 1e-6);
     }
 
     #[test]

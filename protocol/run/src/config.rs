@@ -23,7 +23,7 @@ mod tables;
 use complaint::{misspelt_path, quoted_names};
 pub use error::ConfigError;
 pub use layers::{Source, lay};
-pub use moved::moved;
+pub use moved::{gone, moved};
 use tables::{collect, mark, merge_tables};
 
 /// A configuration: what was given, over the defaults that each section's owner declares.
@@ -54,7 +54,7 @@ impl Config {
     }
 
     /// A table of sections with one origin.
-    fn of(table: Table, origin: &str) -> Self {
+    pub fn of(table: Table, origin: &str) -> Self {
         let mut origins = BTreeMap::new();
         mark(&table, "", origin, &mut origins);
         Self { table, origins }

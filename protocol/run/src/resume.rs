@@ -29,7 +29,6 @@ pub enum Rule {
 use Rule::{Fixed, Free, PhaseOne, Present, While};
 
 const SHAPE: &str = "networks keep the shape that their checkpoint has";
-const BORN: &str = "it is of the first weights, and those have been learned from";
 const WIDTH: Rule = While(
     "exploration.kind",
     "scheduled",
@@ -67,8 +66,7 @@ const TABLE: &[(&str, Rule, &[&str])] = &[
     ("randomization", Free, &[]),
     ("motion", Free, &[]),
     ("policy", Fixed(SHAPE), &["hidden", "critic_hidden"]),
-    ("policy", Fixed(BORN), &["last_gain"]),
-    ("policy", Free, &["observation_clip", "observation_floor"]),
+    ("policy", Free, &["observation_clip"]),
     (
         "exploration",
         Fixed("the widths of one kind are not those of the other"),
@@ -79,41 +77,18 @@ const TABLE: &[(&str, Rule, &[&str])] = &[
         WIDTH,
         &["sigma", "waist_factor", "arm_factor"],
     ),
-    ("exploration", Free, &["min_sigma", "max_sigma"]),
-    (
-        "ppo",
-        Free,
-        &["gamma", "lambda", "reward_scale", "clip", "value_clip"],
-    ),
+    ("ppo", Free, &["gamma", "lambda", "reward_scale", "clip"]),
+    ("ppo", Free, &["entropy_coefficient", "epochs", "minibatch"]),
+    ("ppo", Free, &["learning_rate", "schedule", "kl_target"]),
     (
         "ppo",
         Free,
         &[
-            "value_coefficient",
-            "entropy_coefficient",
-            "epochs",
-            "minibatch",
+            "mirrored_share",
+            "critic_first",
+            "symmetry_weight",
+            "symmetry_share",
         ],
-    ),
-    (
-        "ppo",
-        Free,
-        &["learning_rate", "schedule", "kl_target", "kl_band"],
-    ),
-    (
-        "ppo",
-        Free,
-        &["rate_factor", "min_learning_rate", "max_learning_rate"],
-    ),
-    (
-        "ppo",
-        Free,
-        &["gradient_norm", "advantage_normalization", "mirrored_share"],
-    ),
-    (
-        "ppo",
-        Free,
-        &["critic_first", "symmetry_weight", "symmetry_share"],
     ),
     ("ppo", Free, &["threads"]),
     (
@@ -125,18 +100,9 @@ const TABLE: &[(&str, Rule, &[&str])] = &[
     (
         "discriminator",
         Free,
-        &["steps", "batch", "learning_rate", "decay", "head_decay"],
+        &["steps", "batch", "learning_rate", "gradient_penalty"],
     ),
-    (
-        "discriminator",
-        Free,
-        &["gradient_penalty", "replay_capacity", "replay_insert"],
-    ),
-    (
-        "discriminator",
-        Free,
-        &["replay_share", "feature_clip", "floors"],
-    ),
+    ("discriminator", Free, &["replay_capacity", "replay_insert"]),
     (
         "scheduler",
         PhaseOne("Phase II was entered by it, and nothing leads back"),
@@ -329,7 +295,7 @@ mod tests {
     fn a_key_without_a_rule_is_refused() {
         assert_eq!(rule("optimizer.kind"), None);
         assert_eq!(rule("ppo.new_key"), None);
-        assert_eq!(rule("discriminator.floors.height"), Some(Free));
+        assert_eq!(rule("exploration.sigma.from"), Some(WIDTH));
         assert!(outcome("", "[ppo]\nnew_key = 1", false).is_err());
     }
 }

@@ -11,6 +11,7 @@ use supervise::{Stop, programs};
 use terminal::Place;
 use terminal::console::say;
 use terminal::failure::usage;
+use tokio::io::AsyncWriteExt;
 use tokio::process::{Child, Command};
 use wording::count;
 
@@ -35,7 +36,7 @@ pub(super) fn conduct(plan: &Plan, place: &Place) -> Result<()> {
             }
             let before = i.checked_sub(1).map(|i| plan.stages[i].run.as_str());
             say(&format!("stage {} of {all}: {run}, {iterations}", i + 1));
-            let child = start(stage, before, plan.actors, place)?;
+            let child = start(stage, before, place).await?;
             let (status, stopped) = follow(child, &mut stop).await?;
             // One that is asked to end before it can hear it ends by the signal itself.
             let ended = status.success() || stopped && status.signal() == Some(INTERRUPT);
@@ -84,45 +85,34 @@ fn check_unchanged(stage: &Planned, place: &Place) -> Result<()> {
 }
 
 /// Starts the training of a stage, or goes on with it.
-fn start(
-    stage: &Planned,
-    before: Option<&str>,
-    actors: Option<u32>,
-    place: &Place,
-) -> Result<Child> {
+async fn start(stage: &Planned, before: Option<&str>, place: &Place) -> Result<Child> {
     let mut arguments: Vec<OsString> = vec!["train".into(), "--run".into(), (&stage.run).into()];
     arguments.extend(["--runs-dir".into(), (&place.runs_dir).into()]);
-    if folder(stage, place)?.is_some() {
+    let begun = folder(stage, place)?.is_some();
+    if begun {
         arguments.push("--resume".into());
     } else {
-        arguments.extend(["--preset".into(), (&stage.preset).into()]);
-        arguments.extend(
-            stage
-                .set
-                .iter()
-                .flat_map(|one| ["--set".into(), one.into()]),
-        );
-        arguments.extend(["--iterations".into(), stage.iterations.to_string().into()]);
-        arguments.extend(
-            actors
-                .iter()
-                .flat_map(|n| ["--actors".into(), n.to_string().into()]),
-        );
+        arguments.extend(["--preset".into(), "-".into()]);
         arguments.extend(before.iter().flat_map(|run| ["--from".into(), run.into()]));
     }
     let here = std::env::current_exe().context("finding this program's own path")?;
-    Command::new(here)
+    let mut child = Command::new(here)
         .args(&arguments)
         // Who kills us leaves nobody training: the group ends in order, with a checkpoint.
         .env(
             protocol::SUPERVISOR_VARIABLE,
             std::process::id().to_string(),
         )
-        .stdin(Stdio::null())
+        .stdin(if begun { Stdio::null() } else { Stdio::piped() })
         // A group of its own: Ctrl-C in a terminal would come to it twice, and twice means at once.
         .process_group(0)
         .spawn()
-        .with_context(|| format!("starting the training of {}", stage.run))
+        .with_context(|| format!("starting the training of {}", stage.run))?;
+    if let Some(mut preset) = child.stdin.take() {
+        // One that ends before it has read all says itself why.
+        let _ = preset.write_all(stage.config.to_toml().as_bytes()).await;
+    }
+    Ok(child)
 }
 
 /// Waits for a run to end and passes requests to end on; how it ended, and whether it was asked to.

@@ -5,9 +5,11 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use configuration::{presets, resolve};
 use run::Config;
+use run::config::{Source, lay};
 use serde::Deserialize;
 use terminal::failure::usage;
 use terminal::file;
+use toml::{Table, Value};
 use wording::count;
 
 /// Those that come with the program, by name.
@@ -31,18 +33,16 @@ struct File {
     stages: Vec<Stage>,
 }
 
+/// A preset with a name and a length.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 struct Stage {
     /// Last part of the run's name.
     name: String,
-    /// A preset's name, or a file beside this one. Default: the stage's name.
-    preset: Option<String>,
     /// Length of the run.
     iterations: u32,
-    /// What differs from the preset, as of `ampco train --set`.
-    #[serde(default)]
-    set: Vec<String>,
+    /// What a preset says: `on`, without which it lies on the stage before, `unset`, and sections.
+    #[serde(flatten)]
+    preset: Table,
 }
 
 /// A stage with all that it is trained with.
@@ -50,12 +50,11 @@ struct Stage {
 pub(super) struct Planned {
     /// Name of its run.
     pub(super) run: String,
-    /// As for `ampco train --preset`.
-    pub(super) preset: String,
     pub(super) iterations: u32,
-    pub(super) set: Vec<String>,
     /// Every value, defaults included.
     pub(super) config: Config,
+    /// What it lies on and what it sets, in a line.
+    differs: String,
     /// Transitions of an iteration.
     rows: u64,
 }
@@ -64,7 +63,6 @@ pub(super) struct Planned {
 #[derive(Debug)]
 pub(super) struct Plan {
     title: String,
-    pub(super) actors: Option<u32>,
     pub(super) stages: Vec<Planned>,
 }
 
@@ -78,11 +76,11 @@ impl Plan {
     ) -> Result<Self> {
         let path = Path::new(which);
         let own = EMBEDDED.iter().find(|(name, _)| *name == which);
-        let (text, beside) = match own {
+        let (text, folder) = match own {
             Some((_, text)) => ((*text).to_owned(), None),
             None if path.is_file() => {
-                let text = file::read_text(path)?;
-                (text, Some(path.parent().unwrap_or(Path::new("."))))
+                let folder = path.canonicalize().context("finding the stages' folder")?;
+                (file::read_text(path)?, folder.parent().map(Path::to_owned))
             }
             None => {
                 let names = EMBEDDED.map(|(name, _)| name);
@@ -95,14 +93,20 @@ impl Plan {
         let file = parse(&text).map_err(|problem| usage(format!("{which}: {problem}")))?;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let stem = run.unwrap_or(&stem);
-        let stages = file.stages.iter().map(|stage| {
-            let planned = stage.planned(stem, beside, actors, set);
-            planned.with_context(|| format!("{which}: stage {}", stage.name))
-        });
+        let mut stages = Vec::new();
+        let mut before = Config::default();
+        for stage in &file.stages {
+            if stage.preset.contains_key("on") {
+                before = Config::default();
+            }
+            let source = stage.source(which, folder.as_deref())?;
+            lay(&mut before, source, presets::open)?;
+            let planned = stage.planned(stem, before.clone(), actors, set);
+            stages.push(planned.with_context(|| format!("{which}: stage {}", stage.name))?);
+        }
         Ok(Self {
             title: file.title,
-            actors,
-            stages: stages.collect::<Result<_>>()?,
+            stages,
         })
     }
 
@@ -111,13 +115,9 @@ impl Plan {
         let mut lines = vec![self.title.clone()];
         for stage in &self.stages {
             lines.push(format!(
-                "{}: preset {}{}, {} of {}",
+                "{}: {}, {} of {}",
                 stage.run,
-                stage.preset,
-                stage
-                    .set
-                    .iter()
-                    .fold(String::new(), |all, one| all + " " + one),
+                stage.differs,
                 count(stage.iterations, "iteration"),
                 count(stage.rows, "transition"),
             ));
@@ -137,21 +137,42 @@ impl Plan {
 }
 
 impl Stage {
+    /// Its preset; that of one of ours has no folder.
+    fn source(&self, which: &str, folder: Option<&Path>) -> Result<Source> {
+        Ok(Source {
+            origin: format!("{which}: stage {}", self.name),
+            text: toml::to_string(&self.preset).context("writing a stage as a preset")?,
+            folder: folder.map(Path::to_owned),
+        })
+    }
+
+    /// What it lies on and what it sets, in a line.
+    fn differs(&self) -> String {
+        let on = self.preset.get("on").and_then(Value::as_str);
+        let on = on.unwrap_or("the stage before");
+        let mut sets = self.preset.clone();
+        sets.remove("on");
+        let unset = sets.remove("unset").into_iter();
+        let unset = unset.map(|keys| format!("unset = {keys}"));
+        let sets = Config::of(sets, &self.name).leaves();
+        let sets = sets.iter().map(|(path, value)| format!("{path} = {value}"));
+        let all: Vec<String> = [format!("on {on}")]
+            .into_iter()
+            .chain(unset)
+            .chain(sets)
+            .collect();
+        all.join(", ")
+    }
+
+    /// With what it is trained, of all that it and what it lies on give.
     fn planned(
         &self,
         stem: &str,
-        beside: Option<&Path>,
+        mut config: Config,
         actors: Option<u32>,
         set: &[String],
     ) -> Result<Planned> {
-        let preset = self.preset.as_deref().unwrap_or(&self.name);
-        let own = beside.map(|folder| folder.join(preset));
-        let own = own.filter(|path| path.is_file());
-        let preset = own.map_or(preset.to_owned(), |path| path.display().to_string());
-        let set: Vec<String> = self.set.iter().chain(set).cloned().collect();
-        let found = presets::find(&preset)?;
-        let mut config = found.config;
-        for assignment in &set {
+        for assignment in set {
             config.set(assignment)?;
         }
         config.put("run.iterations", i64::from(self.iterations), "iterations");
@@ -163,10 +184,9 @@ impl Stage {
         let fleet = resolve::resolve(&mut config)?.fleet;
         Ok(Planned {
             run: format!("{stem}-{}", self.name),
-            preset,
             iterations: self.iterations,
-            set,
             config,
+            differs: self.differs(),
             rows: (fleet.actors * fleet.environments_per_actor() * fleet.steps) as u64,
         })
     }
@@ -216,6 +236,21 @@ fn parse(text: &str) -> Result<File, String> {
     }
     for (i, stage) in file.stages.iter().enumerate() {
         let name = &stage.name;
+        for (key, now) in [
+            ("preset", "on = \"athlete\""),
+            ("set", "ppo.epochs = 9, a line for each key"),
+        ] {
+            if stage.preset.contains_key(key) {
+                return Err(format!(
+                    "stage {name}: `{key}` is spelt otherwise now, as in {now}"
+                ));
+            }
+        }
+        if i == 0 && !stage.preset.contains_key("on") {
+            return Err(format!(
+                "stage {name}: no stage is before it; say on which preset it lies, as in on = \"ampco\""
+            ));
+        }
         if stage.iterations == 0 {
             return Err(format!("stage {name}: iterations = 0; a stage has to end"));
         }

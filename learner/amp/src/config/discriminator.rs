@@ -1,6 +1,7 @@
 //! `[discriminator]`: the judge of style.
 
 use super::Check;
+use crate::robot::FeatureKind;
 use crate::{COMMAND, FEATURES};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -29,39 +30,33 @@ pub struct DiscriminatorConfig {
     pub batch: usize,
     /// AdamW's rate. The recipe's.
     pub learning_rate: f32,
-    /// Weight decay of hidden layers. The recipe's.
-    pub decay: f32,
-    /// Weight decay of the last layer. The recipe's.
-    pub head_decay: f32,
     /// λ_GP of Eq. 6, on normalised observations. The recipe's; published least-squares trainers use 10.
     pub gradient_penalty: f32,
     /// Past policy windows that are remembered.
     pub replay_capacity: usize,
     /// New windows remembered per iteration: capacity and this make a memory of about 50 iterations.
     pub replay_insert: usize,
-    /// Share of a step's policy windows that is taken from memory. The recipe's half.
-    pub replay_share: f32,
-    /// Normalised features are clipped to ± this.
-    pub feature_clip: f32,
-    /// Least standard deviations of features: differences below them are not style.
-    pub floors: Floors,
 }
 
-/// `[discriminator.floors]`, each in its own unit. The recipe's: without that of joint velocities, exploration noise
-/// gives the policy away.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Floors {
-    /// Of the pelvis' height, m.
-    pub height: f32,
-    /// Of the pelvis' velocity, m/s.
-    pub linear_velocity: f32,
-    /// Of the pelvis' angular velocity, rad/s.
-    pub angular_velocity: f32,
-    /// Of the joints' positions, rad.
-    pub joint_position: f32,
-    /// Of the joints' velocities, rad/s.
-    pub joint_velocity: f32,
+/// Weight decay of hidden layers. The recipe's.
+pub(crate) const DECAY: f32 = 1e-3;
+/// Weight decay of the last layer. The recipe's.
+pub(crate) const HEAD_DECAY: f32 = 1e-2;
+/// Share of a step's policy windows that is taken from memory. The recipe's half.
+pub(crate) const REPLAY_SHARE: f32 = 0.5;
+/// Normalised features are clipped to ± this.
+pub(crate) const FEATURE_CLIP: f32 = 5.0;
+
+/// Least standard deviation of a feature, in its own unit: differences below it are not style. The recipe's: without that
+/// of joint velocities, exploration noise gives the policy away.
+pub(crate) fn floor(kind: FeatureKind) -> f32 {
+    match kind {
+        FeatureKind::Height => 0.03,         // m
+        FeatureKind::LinearVelocity => 0.3,  // m/s
+        FeatureKind::AngularVelocity => 0.5, // rad/s
+        FeatureKind::JointPosition => 0.1,   // rad
+        FeatureKind::JointVelocity => 2.0,   // rad/s
+    }
 }
 
 impl Default for DiscriminatorConfig {
@@ -74,26 +69,9 @@ impl Default for DiscriminatorConfig {
             steps: 3,
             batch: 1024,
             learning_rate: 1e-4,
-            decay: 1e-3,
-            head_decay: 1e-2,
             gradient_penalty: 20.0,
             replay_capacity: 50_000,
             replay_insert: 1024,
-            replay_share: 0.5,
-            feature_clip: 5.0,
-            floors: Floors::default(),
-        }
-    }
-}
-
-impl Default for Floors {
-    fn default() -> Self {
-        Self {
-            height: 0.03,
-            linear_velocity: 0.3,
-            angular_velocity: 0.5,
-            joint_position: 0.1,
-            joint_velocity: 2.0,
         }
     }
 }
@@ -126,18 +104,9 @@ impl Section for DiscriminatorConfig {
             .count("steps", self.steps, 1000)
             .count("batch", self.batch, 1 << 20)
             .positive("learning_rate", self.learning_rate)
-            .not_negative("decay", self.decay)
-            .not_negative("head_decay", self.head_decay)
             .not_negative("gradient_penalty", self.gradient_penalty)
             .count("replay_capacity", self.replay_capacity, 10_000_000)
             .count("replay_insert", self.replay_insert, self.replay_capacity)
-            .share("replay_share", self.replay_share)
-            .positive("feature_clip", self.feature_clip)
-            .positive("floors.height", self.floors.height)
-            .positive("floors.linear_velocity", self.floors.linear_velocity)
-            .positive("floors.angular_velocity", self.floors.angular_velocity)
-            .positive("floors.joint_position", self.floors.joint_position)
-            .positive("floors.joint_velocity", self.floors.joint_velocity)
             .0
     }
 }

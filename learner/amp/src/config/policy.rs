@@ -13,12 +13,8 @@ pub struct PolicyConfig {
     pub hidden: Vec<usize>,
     /// Widths of the critic's hidden layers (ELU). As the actor's.
     pub critic_hidden: Vec<usize>,
-    /// Gain of the actor's first last layer: small, so that the first actions are near the default pose. The recipe's.
-    pub last_gain: f32,
     /// Normalised observations are clipped to ± this. The recipe's.
     pub observation_clip: f32,
-    /// Least standard deviation of an observation, in its own unit: what never varied must not be blown up later.
-    pub observation_floor: f32,
 }
 
 /// `[exploration]`: the standard deviation σ of actions around the policy's mean, in units of actions.
@@ -34,10 +30,6 @@ pub struct ExplorationConfig {
     pub waist_factor: f32,
     /// Arms' σ in parts of the legs'. The recipe's.
     pub arm_factor: f32,
-    /// Learned: σ stays within `[min_sigma, max_sigma]`.
-    pub min_sigma: f32,
-    /// Learned: see `min_sigma`.
-    pub max_sigma: f32,
 }
 
 /// Choices of [`ExplorationConfig::kind`].
@@ -50,14 +42,19 @@ pub enum ExplorationKind {
     Learned,
 }
 
+/// Gain of the actor's first last layer: small, so that the first actions are near the default pose. The recipe's.
+pub(crate) const LAST_GAIN: f32 = 0.01;
+/// Least standard deviation of an observation, in its own unit: what never varied must not be blown up later.
+pub(crate) const OBSERVATION_FLOOR: f32 = 0.02;
+/// Least and greatest σ of learned exploration.
+pub(crate) const LEARNED_SIGMA: [f32; 2] = [0.05, 1.0];
+
 impl Default for PolicyConfig {
     fn default() -> Self {
         Self {
             hidden: vec![256, 128, 64],
             critic_hidden: vec![256, 128, 64],
-            last_gain: 0.01,
             observation_clip: 5.0,
-            observation_floor: 0.02,
         }
     }
 }
@@ -69,8 +66,6 @@ impl Default for ExplorationConfig {
             sigma: Ramp::moving(0.6, 0.2, [1.0e6, 3.0e6]),
             waist_factor: 0.3,
             arm_factor: 0.3,
-            min_sigma: 0.05,
-            max_sigma: 1.0,
         }
     }
 }
@@ -82,9 +77,7 @@ impl Section for PolicyConfig {
         Check(Ok(()))
             .layers("hidden", &self.hidden)
             .layers("critic_hidden", &self.critic_hidden)
-            .positive("last_gain", self.last_gain)
             .positive("observation_clip", self.observation_clip)
-            .positive("observation_floor", self.observation_floor)
             .0
     }
 }
@@ -97,13 +90,6 @@ impl Section for ExplorationConfig {
             .ramp("sigma", &self.sigma, Check::at_least_a_millionth)
             .at_least_a_millionth("waist_factor", self.waist_factor)
             .at_least_a_millionth("arm_factor", self.arm_factor)
-            .at_least_a_millionth("min_sigma", self.min_sigma)
-            .that(
-                self.max_sigma >= self.min_sigma && self.max_sigma.is_finite(),
-                "max_sigma",
-                self.max_sigma,
-                "use min_sigma or more",
-            )
             .0
     }
 }

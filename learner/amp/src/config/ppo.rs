@@ -17,10 +17,6 @@ pub struct PpoConfig {
     pub reward_scale: f32,
     /// Clip range of the probability ratio. 0.2 in most trainers.
     pub clip: f32,
-    /// Clip range of the value's change, none if absent (the recipe's).
-    pub value_clip: Option<f32>,
-    /// Weight of the value loss beside the surrogate. 1 in most trainers; the networks share nothing but the norm.
-    pub value_coefficient: f32,
     /// Weight of the entropy bonus; only `learned` exploration answers to it. The recipe's 0.
     pub entropy_coefficient: f32,
     /// Passes over the batch. The recipe's.
@@ -34,18 +30,6 @@ pub struct PpoConfig {
     /// Mean KL divergence of the last epoch that the rate is steered to, on a straight line of its logarithm where it
     /// moves. The recipe's. One that shrinks makes the last policies of a long run hardly differ.
     pub kl_target: Ramp<f32>,
-    /// The rate changes when KL leaves [target / band, target · band].
-    pub kl_band: f32,
-    /// Factor of one change. The recipe's.
-    pub rate_factor: f32,
-    /// Lowest rate. As in published trainers.
-    pub min_learning_rate: f32,
-    /// Highest rate. As in published trainers.
-    pub max_learning_rate: f32,
-    /// Global norm that gradients are shortened to. 1 in all published trainers.
-    pub gradient_norm: f32,
-    /// Over which rows advantages get mean 0 and deviation 1.
-    pub advantage_normalization: AdvantageNormalization,
     /// Share of each minibatch that is replaced by its left–right mirror image. The recipe's half.
     pub mirrored_share: Ramp<f32>,
     /// How long the critic alone learns at first, samples: for a policy that comes without critic and optimizer, and would
@@ -74,17 +58,16 @@ pub enum RateSchedule {
     PerMinibatch,
 }
 
-/// Choices of [`PpoConfig::advantage_normalization`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum AdvantageNormalization {
-    /// All rows of the iteration.
-    Batch,
-    /// The rows of each minibatch.
-    Minibatch,
-    /// Not at all.
-    None,
-}
+/// The rate follows the KL divergence when that leaves [target / band, target · band].
+pub(crate) const KL_BAND: f64 = 1.5;
+/// Factor of one change of the rate.
+pub(crate) const RATE_FACTOR: f32 = 1.3;
+/// Lowest rate of one that follows. As in published trainers.
+pub(crate) const LEAST_RATE: f32 = 1e-5;
+/// Highest rate of one that follows. As in published trainers.
+pub(crate) const GREATEST_RATE: f32 = 1e-2;
+/// Global norm that gradients are shortened to. 1 in all published trainers.
+pub(crate) const GRADIENT_NORM: f32 = 1.0;
 
 impl Default for PpoConfig {
     fn default() -> Self {
@@ -93,20 +76,12 @@ impl Default for PpoConfig {
             lambda: 0.95,
             reward_scale: 0.1,
             clip: 0.2,
-            value_clip: None,
-            value_coefficient: 1.0,
             entropy_coefficient: 0.0,
             epochs: 4,
             minibatch: 2048,
             learning_rate: 3e-4,
             schedule: RateSchedule::PerIteration,
             kl_target: 0.025.into(),
-            kl_band: 1.5,
-            rate_factor: 1.3,
-            min_learning_rate: 1e-5,
-            max_learning_rate: 1e-2,
-            gradient_norm: 1.0,
-            advantage_normalization: AdvantageNormalization::Batch,
             mirrored_share: 0.5.into(),
             critic_first: 0.0,
             symmetry_weight: 0.0,
@@ -125,33 +100,11 @@ impl Section for PpoConfig {
             .share("lambda", self.lambda)
             .positive("reward_scale", self.reward_scale)
             .positive("clip", self.clip)
-            .positive("value_clip", self.value_clip.unwrap_or(1.0))
-            .not_negative("value_coefficient", self.value_coefficient)
             .not_negative("entropy_coefficient", self.entropy_coefficient)
             .count("epochs", self.epochs, 1000)
             .count("minibatch", self.minibatch, 1 << 24)
             .positive("learning_rate", self.learning_rate)
             .ramp("kl_target", &self.kl_target, Check::positive)
-            .that(
-                self.kl_band >= 1.0,
-                "kl_band",
-                self.kl_band,
-                "use 1 or more",
-            )
-            .that(
-                self.rate_factor > 1.0,
-                "rate_factor",
-                self.rate_factor,
-                "use more than 1, such as 1.3",
-            )
-            .positive("min_learning_rate", self.min_learning_rate)
-            .that(
-                self.max_learning_rate >= self.min_learning_rate,
-                "max_learning_rate",
-                self.max_learning_rate,
-                "use min_learning_rate or more",
-            )
-            .positive("gradient_norm", self.gradient_norm)
             .ramp("mirrored_share", &self.mirrored_share, Check::share)
             .that(
                 self.critic_first >= 0.0 && self.critic_first.is_finite(),

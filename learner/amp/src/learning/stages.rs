@@ -4,6 +4,7 @@
 
 use super::Learning;
 use crate::batch::Batch;
+use crate::config::REPLAY_SHARE;
 use crate::discrimination;
 use crate::error::Fault;
 use crate::gae::{self, Returns};
@@ -177,7 +178,6 @@ impl Learning {
             log_probs: &batch.log_probs,
             advantages: &scratch.advantages,
             returns: &scratch.returns,
-            values: &scratch.values,
         };
         self.core.ppo.update(&rows, sigma, &mut self.core.generator)
     }
@@ -213,7 +213,7 @@ impl Learning {
         }
         policy.clear();
         for i in 0..count {
-            let remembered = crate::minibatch::is_mirrored(i, config.replay_share);
+            let remembered = crate::minibatch::is_mirrored(i, REPLAY_SHARE);
             if remembered && !self.replay.is_empty() {
                 policy.extend_from_slice(self.replay.draw(&mut core.generator));
             } else {

@@ -118,13 +118,11 @@ impl Ppo {
 
             let loss = surrogate::value_loss(
                 critic.forward(observations),
-                tensor(chunk.values, 1, &device),
                 tensor(chunk.returns, 1, &device),
-                self.config.value_clip,
                 count,
             );
             sums.value_loss += f64::from(values(loss.clone())[0]);
-            let mut gradients = (loss * self.config.value_coefficient).backward();
+            let mut gradients = loss.backward();
             critic.add_gradients(&mut gradients, critic_gradient);
 
             let (means, densities) = (values(means), values(density));
@@ -200,7 +198,6 @@ impl Ppo {
             chunk.advantages.push(advantage);
             chunk.lessons.push(lesson);
             chunk.returns.push(rows.returns[row]);
-            chunk.values.push(rows.values[row]);
         }
         chunk
     }
@@ -225,7 +222,6 @@ struct Chunk {
     log_probs: Vec<f32>,
     advantages: Vec<f32>,
     returns: Vec<f32>,
-    values: Vec<f32>,
     /// 1 where a row is a lesson in symmetry.
     lessons: Vec<f32>,
     roles: Vec<Role>,
@@ -241,7 +237,6 @@ impl Chunk {
             log_probs: column(),
             advantages: column(),
             returns: column(),
-            values: column(),
             lessons: column(),
             roles: Vec::with_capacity(rows),
         }

@@ -3,6 +3,7 @@
 use super::part::{Minibatch, Sums};
 use super::{Ppo, RateSchedule};
 use crate::ACTION;
+use crate::config::{GRADIENT_NORM, GREATEST_RATE, KL_BAND, LEAST_RATE, RATE_FACTOR};
 use crate::error::Fault;
 use burn::tensor::Tensor;
 use networks::{clip_norm, shards, tensor, tracked_device};
@@ -54,7 +55,7 @@ impl Ppo {
                 return Err(Fault::new(what, value));
             }
         }
-        let norm = clip_norm(&mut total.gradient, self.config.gradient_norm);
+        let norm = clip_norm(&mut total.gradient, GRADIENT_NORM);
         Fault::unless_finite(&total.gradient, |i| format!("gradient of {}", self.name(i)))?;
         Ok(norm)
     }
@@ -74,13 +75,12 @@ impl Ppo {
 
     /// Moves the rate one factor toward the KL `target`, if KL is outside the band.
     pub(super) fn follow(&mut self, kl: f64, target: f32) {
-        let (target, band) = (f64::from(target), f64::from(self.config.kl_band));
-        if kl > target * band {
-            self.rate /= self.config.rate_factor;
-        } else if kl < target / band {
-            self.rate *= self.config.rate_factor;
+        let target = f64::from(target);
+        if kl > target * KL_BAND {
+            self.rate /= RATE_FACTOR;
+        } else if kl < target / KL_BAND {
+            self.rate *= RATE_FACTOR;
         }
-        let (least, most) = (self.config.min_learning_rate, self.config.max_learning_rate);
-        self.rate = self.rate.clamp(least, most);
+        self.rate = self.rate.clamp(LEAST_RATE, GREATEST_RATE);
     }
 }

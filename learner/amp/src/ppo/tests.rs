@@ -94,7 +94,6 @@ impl Bandit {
             log_probs: &self.log_probs,
             advantages: &self.rewards,
             returns: &self.rewards,
-            values: &self.rewards,
         }
     }
 }
@@ -227,10 +226,13 @@ fn the_rate_follows_the_divergence() {
     assert!((rate(0.05) - 1e-3 / 1.3).abs() < 1e-9);
     assert!((rate(0.01) - 1.3e-3).abs() < 1e-9);
     assert_eq!(rate(0.03), 1e-3);
-    config.ppo.max_learning_rate = 1.1e-3;
-    let mut ppo = ppo(&config);
-    ppo.follow(0.0, 0.025);
-    assert_eq!(ppo.rate(), 1.1e-3);
+    // 9e-3 · 1.3 is beyond the highest rate, 1.1e-5 / 1.3 below the lowest.
+    for (begins, kl, ends) in [(9e-3, 0.0, 1e-2), (1.1e-5, 1.0, 1e-5)] {
+        config.ppo.learning_rate = begins;
+        let mut ppo = ppo(&config);
+        ppo.follow(kl, 0.025);
+        assert_eq!(ppo.rate(), ends);
+    }
 }
 
 #[test]

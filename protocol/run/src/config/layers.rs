@@ -133,7 +133,12 @@ impl Layer {
         for path in &self.unset {
             if config.given(path).is_none() {
                 let known = paths(config);
-                let known: Vec<&str> = known.iter().map(String::as_str).collect();
+                let depth = path.matches('.').count();
+                let known = known.iter().map(String::as_str);
+                // A table that the key would stand in is not what was meant.
+                let known: Vec<&str> = known
+                    .filter(|known| known.matches('.').count() == depth)
+                    .collect();
                 let remedy = match nearest::remedy(path, &known) {
                     // All that is set would bury the message.
                     all if all.starts_with("known") => "take the line away".to_owned(),

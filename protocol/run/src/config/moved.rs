@@ -96,6 +96,35 @@ const FRICTION: &str = "randomization.friction = { range = [0.5, 1.0] }";
 const IMPULSE: &str = "randomization.impulse = { range = [0.0, 0.5], seconds = [5.0, 10.0] }";
 const STRENGTH: &str = "randomization.strength = { from = 0.0, to = 1.0, samples = [0.0, 3e6] }";
 
+/// Keys that no choice is left of, and what they are now, as TOML; `none` of what is not there any more.
+pub(super) const GONE: [(&str, &str); 17] = [
+    ("ppo.value_clip", "none"),
+    ("ppo.value_coefficient", "1.0"),
+    ("ppo.kl_band", "1.5"),
+    ("ppo.rate_factor", "1.3"),
+    ("ppo.min_learning_rate", "1e-5"),
+    ("ppo.max_learning_rate", "1e-2"),
+    ("ppo.gradient_norm", "1.0"),
+    ("ppo.advantage_normalization", r#""batch""#),
+    ("discriminator.decay", "1e-3"),
+    ("discriminator.head_decay", "1e-2"),
+    ("discriminator.replay_share", "0.5"),
+    ("discriminator.feature_clip", "5.0"),
+    (
+        "discriminator.floors",
+        "{ height = 0.03, linear_velocity = 0.3, angular_velocity = 0.5, joint_position = 0.1, joint_velocity = 2.0 }",
+    ),
+    ("policy.last_gain", "0.01"),
+    ("policy.observation_floor", "0.02"),
+    ("exploration.min_sigma", "0.05"),
+    ("exploration.max_sigma", "1.0"),
+];
+
+/// The keys that no choice is left of.
+pub fn gone() -> impl Iterator<Item = &'static str> {
+    GONE.iter().map(|(path, _)| *path)
+}
+
 /// The keys that moved, with an example of how each is said now.
 pub fn moved() -> impl Iterator<Item = (String, &'static str)> {
     MOVED
@@ -111,6 +140,12 @@ pub(super) fn remedy(section: &str, key: &str) -> Option<String> {
             .strip_prefix(old)
             .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
     };
+    if let Some((_, fixed)) = GONE.iter().find(|(old, _)| inside(old)) {
+        return Some(match *fixed {
+            "none" => "there is no such thing any more; take the line away".to_owned(),
+            fixed => format!("it is no choice any more, and always {fixed}; take the line away"),
+        });
+    }
     let (old, now) = moved().find(|(old, _)| inside(old))?;
     let moves = match &*old {
         "task.curriculum" => "what moves over the samples says so itself",

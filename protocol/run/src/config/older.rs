@@ -6,6 +6,8 @@
 
 use toml::{Table, Value};
 
+use super::moved::GONE;
+
 /// Rows of Table I: the key that switched one, and what its other keys are called within it.
 const ROWS: [(&str, &[(&str, &str)]); 9] = [
     ("mass_variation", &[("mass_range", "range")]),
@@ -31,8 +33,25 @@ const ROWS: [(&str, &[(&str, &str)]); 9] = [
 /// Says in today's words what can be said in them; the rest stays.
 pub(super) fn in_todays_words(table: &mut Table) {
     physics(table);
+    for (path, now) in GONE {
+        if now != "none" {
+            drop_same(table, path, now);
+        }
+    }
     if let Some(Value::Table(randomization)) = table.get_mut("randomization") {
         rows(randomization);
+    }
+}
+
+/// What has the one value that is left says nothing; another value stays to be refused.
+fn drop_same(table: &mut Table, path: &str, now: &str) {
+    let (section, key) = path.split_once('.').expect("a section and a key");
+    let Some(Value::Table(section)) = table.get_mut(section) else {
+        return;
+    };
+    let now: Table = toml::from_str(&format!("now = {now}")).expect("TOML of the program's");
+    if section.get(key) == now.get("now") {
+        section.remove(key);
     }
 }
 
@@ -102,6 +121,19 @@ mod tests {
         assert_eq!(today(old), toml::from_str(new).unwrap());
         // Today's words stay.
         assert_eq!(today(new), toml::from_str(new).unwrap());
+    }
+
+    #[test]
+    fn a_key_without_a_choice_is_dropped_where_it_has_the_value_that_is_left() {
+        let same = "[ppo]\nkl_band = 1.5\nepochs = 4\nadvantage_normalization = \"batch\"\n\
+                    [discriminator.floors]\nheight = 0.03\nlinear_velocity = 0.3\n\
+                    angular_velocity = 0.5\njoint_position = 0.1\njoint_velocity = 2.0";
+        assert_eq!(
+            today(same),
+            toml::from_str("[ppo]\nepochs = 4\n[discriminator]").unwrap()
+        );
+        let other = today("[ppo]\nkl_band = 2.0\nvalue_clip = 0.2");
+        assert_eq!(other["ppo"].as_table().unwrap().len(), 2);
     }
 
     #[test]

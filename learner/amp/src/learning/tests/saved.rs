@@ -56,8 +56,7 @@ fn a_snapshot_begins_with_its_actor_and_its_statistics() {
         .expect("the same sizes");
     assert_eq!(other.critic(), theirs);
     assert_eq!((other.iteration(), other.samples()), (0, 0));
-    let least = config().ppo.min_learning_rate;
-    assert_eq!(other.core.ppo.rate(), least);
+    assert_eq!(other.core.ppo.rate(), crate::config::LEAST_RATE);
 }
 
 #[test]
@@ -65,7 +64,7 @@ fn the_critic_learns_first_and_the_actor_begins_gently() {
     let mut config = config();
     // An iteration is 60 rows: the actor waits in the first two.
     config.ppo.critic_first = 61.0;
-    let (rate, least) = (config.ppo.learning_rate, config.ppo.min_learning_rate);
+    let (rate, least) = (config.ppo.learning_rate, crate::config::LEAST_RATE);
     let mut learning = Learning::new(config, simple(), 1).expect("usable");
     let weights = |learning: &Learning| {
         let ppo = &learning.core.ppo;

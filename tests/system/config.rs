@@ -1,0 +1,181 @@
+//! `ampco config`: what it prints can be read again, runs of older programs are understood, mistakes are named.
+
+use std::fs;
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+
+use crate::harness::{Runs, finish, program, repository};
+
+/// A run's configuration in the words of an older program.
+const OLDER: &str = "[task]\nphysics = \"batched\"\n\
+    [randomization]\nfriction = true\nfriction_range = [0.6, 0.9]\n\
+    mass_variation = false\nmass_range = [-0.5, 0.5]\n\
+    [ppo]\nkl_band = 1.5\nepochs = 7\n";
+
+struct Config(Runs);
+
+impl Config {
+    fn new() -> Self {
+        Self(Runs::new())
+    }
+
+    /// What `ampco config` says and complains of.
+    fn run(&self, arguments: &[&str]) -> (bool, String, String) {
+        let mut command = Command::new(program("ampco"));
+        command.arg("config").args(arguments);
+        command.current_dir(self.0.path());
+        command.arg("--runs-dir").arg(self.0.path());
+        finish(command)
+    }
+
+    fn said(&self, arguments: &[&str]) -> String {
+        let (success, said, complaint) = self.run(arguments);
+        assert!(success, "{arguments:?}: {complaint}");
+        said
+    }
+
+    fn refused(&self, arguments: &[&str]) -> String {
+        let (success, said, complaint) = self.run(arguments);
+        assert!(!success && said.is_empty(), "{arguments:?}: {said}");
+        complaint
+    }
+
+    fn write(&self, name: &str, text: &str) -> String {
+        let path = self.0.run(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        fs::write(&path, text).expect("written");
+        path.display().to_string()
+    }
+}
+
+#[test]
+fn what_is_printed_is_a_preset_of_the_same_values() {
+    let config = Config::new();
+    let printed = config.said(&["agile"]);
+    for part in [
+        "# Sharpness k, s²/m².\nkernel = { from = 3.0, to = 7.0, samples = [5000000.0, 22000000.0] } # s²/m²; preset agile\n",
+        "environments = 1024 # preset agile\n",
+        "percentile = 0.95 # default\n",
+    ] {
+        assert!(printed.contains(part), "{part}\n{printed}");
+    }
+    let file = config.write("again.toml", &printed);
+    let same = config.said(&[&file, "--diff", "agile"]);
+    assert!(
+        same.ends_with("and preset agile do not differ.\n"),
+        "{same}"
+    );
+}
+
+#[test]
+fn two_configurations_are_told_apart_key_by_key() {
+    let config = Config::new();
+    config.write(
+        "mine.toml",
+        "on = \"smoke\"\nunset = [\"fleet.actors\"]\n[ppo]\nepochs = 3\n",
+    );
+    let told = config.said(&["mine.toml", "--diff", "smoke"]);
+    let lines: Vec<&str> = told.lines().filter(|line| line.contains(" = ")).collect();
+    assert_eq!(lines.len(), 2, "{told}");
+    assert!(lines[0].starts_with("actors = 0 # default"), "{told}");
+    assert!(
+        lines[1].starts_with("epochs = 3 # ") && lines[1].ends_with("mine.toml"),
+        "{told}"
+    );
+    assert!(
+        told.contains("# in preset smoke: 2, preset smoke\n"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_run_of_an_older_program_is_understood_and_told_from_a_preset() {
+    let config = Config::new();
+    config.write("old/config.toml", OLDER);
+    let json = config.said(&["old", "--diff", "ampco-literal", "--json"]);
+    let json: Value = serde_json::from_str(&json).expect("JSON");
+    let entry = |key: &str| {
+        let keys = json["keys"].as_array().expect("a list");
+        keys.iter()
+            .find(|entry| entry["key"] == key)
+            .cloned()
+            .unwrap_or_default()
+    };
+    assert_eq!(entry("fleet.physics")["value"], "batched");
+    assert_eq!(entry("fleet.physics")["other"], "rapier");
+    assert_eq!(entry("fleet.physics")["origin"], "run old");
+    assert_eq!(entry("ppo.epochs")["value"], 7);
+    let friction = entry("randomization.friction.range");
+    assert_eq!(friction["value"], serde_json::json!([0.6, 0.9]));
+    assert_eq!(friction["other_origin"], "preset ampco-literal");
+    let mass = entry("randomization.mass_variation.range");
+    assert_eq!(
+        (&mass["value"], &mass["unit"]),
+        (&Value::Null, &"kg".into())
+    );
+    // A shipped policy says its physics where runs said it once.
+    let shipped = repository().join("deploy/policies/longer-look");
+    let told = config.said(&[shipped.to_str().expect("text")]);
+    assert!(
+        told.contains("physics = \"batched\" # run longer-look"),
+        "{told}"
+    );
+    // Written by a person, the same words are refused with today's.
+    let file = config.write("old.toml", OLDER);
+    let said = config.refused(&[&file]);
+    assert!(
+        said.contains("old.toml") && said.contains("fleet.physics = \"batched\""),
+        "{said}"
+    );
+}
+
+#[test]
+fn mistakes_are_named_with_what_was_meant() {
+    let config = Config::new();
+    config.write("agile-1/config.toml", "");
+    config.write("a.toml", "on = \"b.toml\"");
+    config.write("b.toml", "on = \"a.toml\"");
+    config.write("gone.toml", "[ppo]\nkl_band = 2.0");
+    for (arguments, parts) in [
+        (
+            &["agil"][..],
+            ["no preset, no file and no run `agil`", "`agile`"],
+        ),
+        (&["agile-2"], ["no run `agile-2`", "`agile-1`"]),
+        (
+            &["agile", "--diff", "smok"],
+            ["`smok`", "did you mean `smoke`"],
+        ),
+        (&["a.toml"], ["circle", "b.toml on"]),
+        (&["gone.toml"], ["kl_band", "always 1.5"]),
+        (&["./nowhere"], ["nowhere", "is not a folder"]),
+    ] {
+        let said = config.refused(arguments);
+        assert!(parts.iter().all(|part| said.contains(part)), "{said}");
+        assert_eq!(said.lines().count(), 1, "{said}");
+    }
+}
+
+#[test]
+fn keys_are_counted() {
+    let config = Config::new();
+    let count: usize = config.said(&["--count"]).trim().parse().expect("a number");
+    assert!((60..=110).contains(&count), "{count} keys");
+    let json: Value = serde_json::from_str(&config.said(&["--count", "--json"])).expect("JSON");
+    assert_eq!(json["keys"], count);
+    assert!(!config.run(&["agile", "--count"]).0);
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_failure() {
+    let mut child = Command::new(program("ampco"))
+        .args(["config", "agile"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("started");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("ended");
+    assert!(output.status.success() && output.stderr.is_empty());
+}
