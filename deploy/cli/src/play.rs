@@ -8,7 +8,7 @@ pub(crate) mod policy;
 use std::path::PathBuf;
 
 use anyhow::Result;
-use judge::Command;
+use judge::{Command, Subject};
 use playback::{Recording, page};
 use policy::Show;
 use sim::RandomizationConfig;

@@ -35,7 +35,7 @@ pub struct Subject {
     pub kept: Kept,
     /// The task that it is tried by.
     pub task: TaskConfig,
-    /// What moves the robots when it is judged, whatever it was when it learned.
+    /// What moves the robots: what it learned in, unless whoever tries it says otherwise.
     pub physics: Physics,
     motion: MotionConfig,
     /// Made when it is first asked for: most who watch a policy never do.
@@ -161,9 +161,10 @@ impl Subject {
     pub fn open(place: &Place, name: &str) -> Result<Self> {
         let kept = Kept::open(place, name)?;
         let motion: MotionConfig = kept.config.section()?;
+        let fleet: FleetConfig = kept.config.section()?;
         Ok(Self {
             task: kept.task()?,
-            physics: Physics::default(),
+            physics: fleet.physics,
             motion,
             reference: OnceLock::new(),
             kept,

@@ -130,12 +130,12 @@ mod tests {
                 .collect()
         };
         // 19 in a row are not believed, and one that is otherwise begins the count anew.
-        assert_eq!(take(APART, 19), []);
-        assert_eq!(take(UNSURE, 1), []);
-        assert_eq!(take(APART, 19), []);
+        assert_eq!(take(APART, 19), [false; 0]);
+        assert_eq!(take(UNSURE, 1), [false; 0]);
+        assert_eq!(take(APART, 19), [false; 0]);
         assert_eq!(take(APART, 1), [true]);
-        assert_eq!(take(APART, 100), []);
-        assert_eq!(take(UNSURE, 19), []);
+        assert_eq!(take(APART, 100), [false; 0]);
+        assert_eq!(take(UNSURE, 19), [false; 0]);
         assert_eq!(take(UNSURE, 100), [false]);
         assert_eq!(take(APART, 20), [true]);
     }

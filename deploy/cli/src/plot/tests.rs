@@ -4,7 +4,7 @@ use super::*;
 use serde_json::json;
 
 /// A run whose iterations 3 and 4 are of Phase II, and whose iteration 2 was refused.
-fn run(runs: &std::path::Path, name: &str) -> Folder {
+fn run(runs: &Path, name: &str) -> Folder {
     let folder = Folder::create(runs, name).unwrap();
     std::fs::write(folder.config_path(), "").unwrap();
     let mut metrics = run::Metrics::open(&folder.metrics_path()).unwrap();
