@@ -5,6 +5,7 @@
 #   deploy/local.sh --preset smoke --run try         everything once, in seconds
 #   deploy/local.sh --run walk --minutes 20          twenty minutes, in runs/walk of the present folder
 #   deploy/local.sh --run walk --resume              on from its last checkpoint
+#   deploy/local.sh --no-pictures                    without play.html and curves.svg at the end
 #   deploy/local.sh --help                           all options
 #
 # It may be called from any folder. Nothing is downloaded but the crates that Cargo.lock names.

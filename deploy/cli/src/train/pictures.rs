@@ -56,7 +56,7 @@ fn page_of(place: &Place, folder: &Folder) -> Result<(PathBuf, String)> {
     file::write(&path, page::html(&recording).as_bytes())?;
     let mut shown = format!("the policy at {}", asked(&commands));
     if let Some(at) = recording.fell_at {
-        shown += &format!("; it falls after {at:.1} s");
+        shown += &format!("; it falls after {at:.1} s, and is put up again for the next");
     }
     Ok((path, shown))
 }
