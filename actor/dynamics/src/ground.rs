@@ -42,6 +42,11 @@ impl Heights {
         })
     }
 
+    /// Height at a place, m.
+    pub fn height(&self, x: f64, y: f64) -> f64 {
+        self.look(x, y).0
+    }
+
     /// Height and slopes along x and y at a place.
     fn look(&self, x: f64, y: f64) -> (f64, f64, f64) {
         let spacing = f64::from(self.spacing);

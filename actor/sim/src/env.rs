@@ -7,6 +7,7 @@
 use crate::actuator;
 use crate::command::Occasion;
 use crate::feet::Footing;
+use crate::ground::Ground;
 use crate::moment::{self, Moment};
 use crate::physics::Bodies;
 use crate::randomization::Table;
@@ -31,9 +32,19 @@ pub(crate) struct Setting {
     pub(crate) pools: Pools,
     /// Robots of the fleet.
     pub(crate) robots: usize,
+    /// Hills and bumps, where the floor is not level.
+    pub(crate) ground: Option<Ground>,
 }
 
 impl Setting {
+    /// A state of an engine as it is told.
+    fn told(&self, state: RobotState) -> RobotState {
+        match &self.ground {
+            None => state,
+            Some(ground) => ground.level(state),
+        }
+    }
+
     /// Table I as it counts for a robot.
     pub(crate) fn table(&self, robot: usize) -> &Table {
         if self.table.rows.spares(robot) {
@@ -113,7 +124,11 @@ impl Environment {
             &setting.task.command,
             &mut self.random,
         );
-        self.state = bodies.begin(index, &variation, &start.state);
+        let state = match &setting.ground {
+            None => start.state,
+            Some(ground) => ground.place(&start.state, setting.task.start.lift, &mut self.random),
+        };
+        self.state = setting.told(bodies.begin(index, &variation, &state));
         self.command = start.command;
         self.previous_action = [0.0; JOINTS];
         self.astray = Astray::at_start(start.fits);
@@ -164,7 +179,7 @@ impl Environment {
         if !bodies.is_sound(index) {
             return self.broken();
         }
-        self.state = bodies.state(index);
+        self.state = setting.told(bodies.state(index));
         let rules = &setting.task.termination;
         let stray = rules.stray.as_ref();
         let strayed = stray.is_some_and(|rule| self.astray.step(rule, &self.command, &self.state));

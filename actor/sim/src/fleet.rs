@@ -107,8 +107,9 @@ impl Fleet {
             pools: Pools::of(&starts),
             starts,
             robots: environments,
+            ground: task.ground.map(|ground| ground.lay(seed)),
         };
-        let mut bodies = Bodies::new(physics, &gains, environments);
+        let mut bodies = Bodies::new(physics, &gains, environments, setting.ground.as_ref());
         let mut fleet = Self {
             environments: (0..environments)
                 .map(|index| Environment::new(&setting, &mut bodies, seed, index))
@@ -170,10 +171,13 @@ impl Fleet {
         &self.setting.table.rows
     }
 
-    /// Goes on with another task: its rewards and ends count from the next step, its commands and starts whenever they
-    /// are drawn next.
+    /// Goes on with another task on the same ground: its rewards and ends count from the next step, its commands and
+    /// starts whenever they are drawn next.
     pub fn set_task(&mut self, task: TaskConfig) {
-        self.setting.task = task;
+        self.setting.task = TaskConfig {
+            ground: self.setting.task.ground,
+            ..task
+        };
     }
 
     /// Goes on with other ranges of Table I: noise and pushes from the next step, robots and floors from

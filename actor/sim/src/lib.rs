@@ -19,6 +19,7 @@
 //! | commands c_t | [`command`] |
 //! | kinds of command, each with its share of the robots | [`kind`] |
 //! | where episodes begin | [`start`] |
+//! | hills and bumps | [`ground`] |
 //! | domain randomisation (Table I) | [`randomization`] |
 //! | motors: position control, torque limits, energy (III-F) | [`actuator`] |
 //! | the two engines behind one seam | [`physics`] |
@@ -37,6 +38,7 @@ pub mod error;
 pub mod feet;
 pub mod fleet;
 pub mod gate;
+pub mod ground;
 pub mod kind;
 pub mod model;
 pub mod moment;
@@ -57,6 +59,7 @@ pub use engine::Engine;
 pub use error::SimError;
 pub use fleet::{Fleet, LastStep, StepOut};
 pub use gate::GateConfig;
+pub use ground::GroundConfig;
 pub use kind::{Kind, KindsConfig};
 pub use model::Variation;
 pub use moment::Moment;

@@ -7,6 +7,7 @@ mod batched;
 mod worlds;
 
 use crate::actuator::Gains;
+use crate::ground::Ground;
 use crate::model::Variation;
 use batched::Batched;
 use g1::{JOINTS, RobotState};
@@ -41,10 +42,16 @@ macro_rules! both {
 }
 
 impl Bodies {
-    pub(crate) fn new(physics: Physics, gains: &Gains, count: usize) -> Self {
+    /// Robots on a level floor, or on `ground`.
+    pub(crate) fn new(
+        physics: Physics,
+        gains: &Gains,
+        count: usize,
+        ground: Option<&Ground>,
+    ) -> Self {
         match physics {
-            Physics::Rapier => Self::Rapier(Box::new(Worlds::new(gains, count))),
-            Physics::Batched => Self::Batched(Box::new(Batched::new(gains, count))),
+            Physics::Rapier => Self::Rapier(Box::new(Worlds::new(gains, count, ground))),
+            Physics::Batched => Self::Batched(Box::new(Batched::new(gains, count, ground))),
         }
     }
 

@@ -5,6 +5,7 @@
 
 use crate::command::CommandConfig;
 use crate::gate::{self, GateConfig};
+use crate::ground::GroundConfig;
 use crate::moment::Moment;
 use crate::reward::{self, RewardConfig};
 use crate::start::StartConfig;
@@ -47,6 +48,9 @@ pub struct TaskConfig {
     pub command: CommandConfig,
     /// Where episodes begin.
     pub start: StartConfig,
+    /// Hills and bumps. Default: the floor is level.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ground: Option<GroundConfig>,
 }
 
 impl Section for TaskConfig {
@@ -58,7 +62,9 @@ impl Section for TaskConfig {
         within("gate", self.gate.validate())?;
         within("termination", self.termination.validate())?;
         within("command", self.command.validate())?;
-        within("start", self.start.validate())
+        within("start", self.start.validate())?;
+        let ground = self.ground.as_ref().map_or(Ok(()), GroundConfig::validate);
+        within("ground", ground)
     }
 }
 

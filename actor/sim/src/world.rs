@@ -1,4 +1,4 @@
-//! One robot on a flat floor: the tables of `g1` as a rapier multibody, its state in and out.
+//! One robot on its floor: the tables of `g1` as a rapier multibody, its state in and out.
 //!
 //! Separate because this and `model` are all that knows how rapier is fed; what is done to the
 //! robot (torques, tasks, resets) is said elsewhere. One robot per world: many in one world cost
@@ -67,7 +67,6 @@ pub struct World {
     links: [RigidBodyHandle; BODIES],
     robot: MultibodyJointHandle,
     soles: [ColliderHandle; 2],
-    floor: ColliderHandle,
     // rapier turns a body with numbers that are not finite into a disabled one with finite numbers.
     broken: bool,
 }
@@ -201,15 +200,13 @@ impl World {
         !self.broken && speeds_sound && self.state().is_finite()
     }
 
-    /// Normal impulse of the floor on a sole during the last physics step, N·s.
+    /// Normal impulse of floor and ground on a sole during the last physics step, N·s.
     fn sole_impulse(&self, side: usize) -> f32 {
-        let manifolds = self
-            .narrow_phase
-            .contact_pair(self.soles[side], self.floor)
-            .and_then(|pair| pair.rigid())
-            .map_or(&[][..], |pair| &pair.manifolds);
-        manifolds
-            .iter()
+        // Soles touch nothing else.
+        self.narrow_phase
+            .contact_pairs_with(self.soles[side])
+            .filter_map(|pair| pair.rigid())
+            .flat_map(|pair| &pair.manifolds)
             .flat_map(|manifold| &manifold.points)
             .fold(0.0, |sum, point| sum + point.data.impulse)
     }

@@ -2,9 +2,10 @@
 
 use super::Exertion;
 use crate::actuator::Gains;
+use crate::ground::Ground;
 use crate::model::Variation;
 use crate::time::{PHYSICS_STEP, SUBSTEPS};
-use dynamics::{Build, Ground, Motors, Robots, Saved, Solver};
+use dynamics::{Build, Motors, Robots, Saved, Solver};
 use g1::{JOINT_TABLE, JOINTS, RobotState};
 use nalgebra::Vector3;
 
@@ -15,7 +16,7 @@ const SWEEPS: usize = 4;
 pub(crate) struct Batched(Robots);
 
 impl Batched {
-    pub(crate) fn new(gains: &Gains, count: usize) -> Self {
+    pub(crate) fn new(gains: &Gains, count: usize, ground: Option<&Ground>) -> Self {
         let solver = Solver {
             dt: PHYSICS_STEP,
             sweeps: SWEEPS,
@@ -24,7 +25,9 @@ impl Batched {
                 damping: gains.damping,
                 effort: gains.effort,
             },
-            ground: Ground::Plane,
+            ground: ground.map_or(dynamics::Ground::Plane, |ground| {
+                dynamics::Ground::Heights(ground.heights().clone())
+            }),
         };
         Self(Robots::new(solver, count))
     }

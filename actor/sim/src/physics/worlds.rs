@@ -3,6 +3,7 @@
 use super::Exertion;
 use crate::actuator::Gains;
 use crate::engine::Engine;
+use crate::ground::Ground;
 use crate::model::Variation;
 use crate::world::World;
 use g1::{DEFAULT_POSE, JOINTS, RobotState};
@@ -20,8 +21,11 @@ pub(crate) struct Worlds {
 }
 
 impl Worlds {
-    pub(crate) fn new(gains: &Gains, count: usize) -> Self {
-        let template = World::new(&Variation::NOMINAL);
+    pub(crate) fn new(gains: &Gains, count: usize, ground: Option<&Ground>) -> Self {
+        let mut template = World::new(&Variation::NOMINAL);
+        if let Some(ground) = ground {
+            template.lay(ground);
+        }
         Self {
             engine: Engine::new(),
             gains: gains.clone(),

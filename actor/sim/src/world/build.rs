@@ -3,6 +3,7 @@
 //! Separate because this happens once per episode and has nothing to do with stepping.
 
 use super::{BASE_DEGREES, DEGREES, World};
+use crate::ground::Ground;
 use crate::model::{self, Variation};
 use g1::{BODIES, JOINT_TABLE, LEFT_FOOT, RIGHT_FOOT, links};
 use nalgebra::{Unit, Vector3};
@@ -15,6 +16,14 @@ use rapier3d::geometry::{
     NarrowPhase,
 };
 use rapier3d::math::{Pose, Vector};
+
+/// Feet touch the floor and nothing else touches anything.
+const FLOOR: Group = Group::GROUP_1;
+const SOLES: Group = Group::GROUP_2;
+
+fn groups(member: Group, with: Group) -> InteractionGroups {
+    InteractionGroups::new(member, with, InteractionTestMode::And)
+}
 
 impl World {
     /// A robot in its tables' zero pose at the origin; place it with [`World::set_state`].
@@ -31,13 +40,10 @@ impl World {
             link.set_allow_fast_rotation(true);
             bodies.insert(link)
         });
-        // Feet touch the floor and nothing else touches anything.
-        let (floor_group, sole_group) = (Group::GROUP_1, Group::GROUP_2);
-        let groups = |member, with| InteractionGroups::new(member, with, InteractionTestMode::And);
-        let floor = colliders.insert(
+        colliders.insert(
             ColliderBuilder::halfspace(Unit::new_unchecked(Vector::Z))
                 .friction(1.0)
-                .collision_groups(groups(floor_group, sole_group)),
+                .collision_groups(groups(FLOOR, SOLES)),
         );
         let half = Vector3::from(links::FOOT_HALF_EXTENTS).cast::<f32>();
         let soles = [LEFT_FOOT, RIGHT_FOOT].map(|foot| {
@@ -48,7 +54,7 @@ impl World {
                 .density(0.0)
                 .friction(variation.friction)
                 .friction_combine_rule(CoefficientCombineRule::Multiply)
-                .collision_groups(groups(sole_group, floor_group));
+                .collision_groups(groups(SOLES, FLOOR));
             colliders.insert_with_parent(sole, links[foot], &mut bodies)
         });
         let mut robot = MultibodyJointHandle::invalid();
@@ -98,9 +104,18 @@ impl World {
             links,
             robot,
             soles,
-            floor,
             broken: false,
         }
+    }
+
+    /// Lays hills and bumps over the floor, which goes on where they end. For worlds that were never stepped.
+    pub(crate) fn lay(&mut self, ground: &Ground) {
+        self.colliders.insert(
+            ColliderBuilder::new(ground.shape())
+                .rotation(Vector::X * std::f32::consts::FRAC_PI_2)
+                .friction(1.0)
+                .collision_groups(groups(FLOOR, SOLES)),
+        );
     }
 
     /// A fresh world from a template that was never stepped: bit-equal to `World::new(variation)`
