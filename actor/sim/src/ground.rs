@@ -10,6 +10,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use rapier3d::geometry::{Array2, HeightFieldFlags, SharedShape};
 use rapier3d::math::Vector;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vocabulary::Checked;
 use vocabulary::invalid::require;
@@ -24,7 +25,10 @@ const EXTENT: f32 = SPACING * (SIDE - 1) as f32 / 2.0;
 const PERIOD: usize = 24;
 /// The same, m.
 const WAVELENGTH: f32 = SPACING * PERIOD as f32;
-const _: () = assert!((SIDE - 1) / 2 % PERIOD == 0, "hills end at the edge");
+const _: () = assert!(
+    ((SIDE - 1) / 2).is_multiple_of(PERIOD),
+    "hills end at the edge"
+);
 /// Robots begin this far from the middle at most, along x and along y, m.
 const START: f32 = 10.0;
 /// Steepest hills that may be asked for, degrees.
@@ -33,7 +37,7 @@ const STEEPEST: f32 = 5.0;
 const HIGHEST: f32 = 0.02;
 
 /// What the ground is like.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct GroundConfig {
     /// Steepest slope of the hills, degrees; robots meet every slope up to it, in every direction. 0 to 5, default 0.

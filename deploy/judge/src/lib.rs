@@ -26,6 +26,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use clap::builder::PossibleValuesParser;
 use serde_json::Value;
+use sim::GroundConfig;
 use sim::randomization::ROWS;
 use terminal::console::{self, Console};
 use terminal::failure::usage;
@@ -98,6 +99,13 @@ pub struct Evaluate {
     /// Engine that judges, whatever the policy was trained in
     #[arg(long, value_enum, default_value_t = Engine::Rapier)]
     physics: Engine,
+    /// Walk on hills with slopes up to so many degrees in every direction, at most 5. Without it and --bumps the floor
+    /// is level, whatever the policy was trained on
+    #[arg(long, value_name = "DEG", default_value_t = 0.0)]
+    slope: f32,
+    /// Walk over bumps of up to so many metres, at most 0.02
+    #[arg(long, value_name = "M", default_value_t = 0.0)]
+    bumps: f32,
     /// Seed of the episodes
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -124,6 +132,7 @@ impl Evaluate {
         let conditions = self.conditions()?;
         let mut subject = Subject::open(&self.place, &self.run)?;
         subject.physics = self.physics.into();
+        subject.task.ground = self.ground()?;
         let given = self.judge.as_deref();
         let frozen = given
             .map(|judge| Kept::open(&self.place, judge))
@@ -165,6 +174,19 @@ impl Evaluate {
             seed: self.seed,
             traced: self.suite.is_some() || self.out.is_some(),
         })
+    }
+
+    /// What the robots walk on; none for a level floor.
+    fn ground(&self) -> Result<Option<GroundConfig>> {
+        let ground = GroundConfig {
+            slope: self.slope,
+            bumps: self.bumps,
+        };
+        ground.validate().map_err(|invalid| {
+            let (path, value, remedy) = (invalid.path, invalid.value, invalid.remedy);
+            usage(format!("--{path} {value}: {remedy}"))
+        })?;
+        Ok((ground != GroundConfig::default()).then_some(ground))
     }
 
     fn scenarios(&self) -> Vec<Scenario> {

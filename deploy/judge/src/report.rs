@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use serde::Serialize;
 use serde_json::Value;
-use sim::Physics;
+use sim::{GroundConfig, Physics};
 use wording::count;
 
 use super::episodes::Conditions;
@@ -28,6 +28,9 @@ pub(super) struct Report {
     judge: Option<PathBuf>,
     /// The engine that moved the robots.
     physics: Physics,
+    /// What the robots walked on, where the floor was not level.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ground: Option<GroundConfig>,
     seconds: f64,
     episodes: usize,
     seed: u64,
@@ -84,6 +87,7 @@ impl Report {
             iteration: subject.kept.iteration,
             judge: judge.map(|judge| judge.path.clone()),
             physics: subject.physics,
+            ground: subject.task.ground,
             seconds: f64::from(conditions.steps) / CONTROL_HZ,
             episodes: conditions.episodes,
             seed: conditions.seed,
@@ -120,8 +124,14 @@ impl Report {
             Some(judge) => format!("judged by {}", judge.display()),
             None => "judged by its own discriminator".to_owned(),
         };
+        let ground = self.ground.map_or_else(String::new, |ground| {
+            format!(
+                ", on slopes to {}° and bumps to {} m",
+                ground.slope, ground.bumps
+            )
+        });
         format!(
-            "{}, iteration {}: {} of {} s each, seed {}, {}; style {judge}",
+            "{}, iteration {}: {} of {} s each, seed {}, {}{ground}; style {judge}",
             self.checkpoint.display(),
             self.iteration,
             count(self.episodes, "episode"),
@@ -200,6 +210,7 @@ mod tests {
             iteration: 100,
             judge: None,
             physics: Physics::Batched,
+            ground: None,
             seconds: 20.0,
             episodes: 4,
             seed: 1,
@@ -209,6 +220,31 @@ mod tests {
                 row("forward-0.5-pushed", "pushed"),
             ],
         }
+    }
+
+    #[test]
+    fn ground_that_is_not_level_is_told() {
+        let level = report();
+        assert!(!level.summary().contains("slopes"), "{}", level.summary());
+        assert!(
+            serde_json::to_value(&level)
+                .unwrap()
+                .get("ground")
+                .is_none()
+        );
+        let hilly = Report {
+            ground: Some(GroundConfig {
+                slope: 3.0,
+                bumps: 0.01,
+            }),
+            ..level
+        };
+        let told = ", in the batched engine, on slopes to 3° and bumps to 0.01 m; style";
+        assert!(hilly.summary().contains(told), "{}", hilly.summary());
+        assert_eq!(
+            serde_json::to_value(&hilly).unwrap()["ground"]["slope"],
+            3.0
+        );
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::*;
 use crate::{Fleet, Physics, RandomizationConfig, Starts, StepRows, TaskConfig};
 use g1::ACTION;
+use vocabulary::Section;
 
 const HILLY: GroundConfig = GroundConfig {
     slope: 5.0,
@@ -26,11 +27,11 @@ fn clearance(ground: &Ground, told: &RobotState) -> f32 {
 
 fn fleet(physics: Physics, ground: GroundConfig) -> Fleet {
     let task = TaskConfig {
-        physics,
         ground: Some(ground),
         ..TaskConfig::default()
     };
-    Fleet::new(&task, &RandomizationConfig::none(), Starts::default(), 6, 3).unwrap()
+    let plain = RandomizationConfig::default();
+    Fleet::new(physics, &task, &plain, Starts::default(), 6, 3).unwrap()
 }
 
 #[test]
