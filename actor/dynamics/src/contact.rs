@@ -15,7 +15,7 @@ use crate::factor::{self, Factor};
 use crate::ground::Ground;
 use crate::group::Group;
 use crate::kinematics::Walk;
-use crate::lane::Lane;
+use crate::lane::{Lane, Real};
 use crate::spatial::Vec3;
 use crate::tree::{
     BASE, CHAIN, DEGREES, LIMBS, POINT_TABLE, POINTS, SOLE_POINTS, SOLES, TRUNK, Tree,
@@ -230,9 +230,14 @@ pub(crate) fn solve<L: Lane>(groups: &mut [&mut Contacts<L>], sweeps: usize) {
     }
 }
 
+/// The robot's tree, its points weighed.
+pub(crate) fn tree<T: Real>() -> Tree<T> {
+    Tree::weighed(weights(&Tree::weightless()))
+}
+
 /// Velocity per impulse at every point of the robot that stands, mean of the three directions, 1/kg:
 /// what softness is a share of, so that it does not depend on the step or on the pose.
-pub(crate) fn weights(tree: &Tree<f64>) -> [f64; POINTS] {
+fn weights(tree: &Tree<f64>) -> [f64; POINTS] {
     let mut standing = Group::new(());
     standing.load((), &Block::new(), &[Row::default(); JOINTS], 0);
     let mut walk = Walk::new(());

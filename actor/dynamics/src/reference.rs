@@ -4,7 +4,7 @@
 //! equations of motion themselves, M·v̇ = τ − C, taken by a fourth-order method where no contact acts.
 
 use crate::block::{Block, Row, row};
-use crate::contact::Contacts;
+use crate::contact::{self, Contacts};
 use crate::drive::Motors;
 use crate::factor::{self, Factor};
 use crate::ground::Ground;
@@ -34,7 +34,7 @@ impl Reference {
     /// With a solver's motors and ground.
     pub fn new(solver: &Solver, sweeps: usize) -> Self {
         Self {
-            tree: Tree::new(),
+            tree: contact::tree(),
             ground: solver.ground.clone(),
             motors: solver.motors.cast(),
             sweeps,

@@ -3,7 +3,7 @@
 //! Separate because callers think of robot 37, while the solver thinks of lane 5 of block 2.
 
 use crate::block::{Block, Build, LANES, Row, row};
-use crate::contact::Contacts;
+use crate::contact::{self, Contacts};
 use crate::drive::Motors;
 use crate::ground::Ground;
 use crate::group::Tally;
@@ -80,7 +80,7 @@ impl Robots {
         let blocks = count.div_ceil(LANES);
         Self {
             solver,
-            tree: Tree::new(),
+            tree: contact::tree(),
             arch,
             blocks: vec![Block::new(); blocks],
             targets: vec![[Row::default(); JOINTS]; blocks],

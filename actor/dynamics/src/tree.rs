@@ -5,7 +5,6 @@
 //! (3, world frame) and 23 joint speeds: 29 numbers. Seen from its end every limb hangs on a chain of
 //! twelve: a leg on the base's 6 and its own 6, an arm on the base's 6, the waist and its own 5.
 
-use crate::contact;
 use crate::lane::Real;
 use g1::{BODIES, JOINT_TABLE, JOINTS, LEFT_FOOT, LINK_TABLE, RIGHT_FOOT, joints, links};
 use nalgebra::Rotation3;
@@ -166,16 +165,16 @@ pub(crate) struct Tree<T> {
 }
 
 impl<T: Real> Tree<T> {
-    pub(crate) fn new() -> Self {
-        let weights = contact::weights(&Tree::<f64>::weightless());
+    /// With the points' weights, 1/kg, which take a solver to find: [`crate::contact::tree`].
+    pub(crate) fn weighed(weights: [f64; POINTS]) -> Self {
         Self {
             weights: weights.map(T::of),
             ..Self::weightless()
         }
     }
 
-    /// All but the points' weights, which take a solver to find.
-    fn weightless() -> Self {
+    /// All but the points' weights.
+    pub(crate) fn weightless() -> Self {
         let hinges = std::array::from_fn(|i| {
             let joint = &JOINT_TABLE[i];
             let [roll, pitch, yaw] = joint.rpy;
