@@ -7,6 +7,7 @@
 
 mod bad_input;
 mod begin;
+mod circles;
 mod config;
 mod disk;
 mod elastic;
