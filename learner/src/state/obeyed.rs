@@ -43,7 +43,6 @@ const CASES: &[(&str, &str, &str)] = &[
     ("ppo.lambda", "", "0.5"),
     ("ppo.reward_scale", "", "0.5"),
     ("ppo.clip", "", "0.001"),
-    ("ppo.entropy_coefficient", "exploration.kind=learned", "0.5"),
     ("ppo.epochs", "", "3"),
     ("ppo.minibatch", "", "16"),
     ("ppo.learning_rate", "", "2e-5"),

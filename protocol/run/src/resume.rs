@@ -78,7 +78,7 @@ const TABLE: &[(&str, Rule, &[&str])] = &[
         &["sigma", "waist_factor", "arm_factor"],
     ),
     ("ppo", Free, &["gamma", "lambda", "reward_scale", "clip"]),
-    ("ppo", Free, &["entropy_coefficient", "epochs", "minibatch"]),
+    ("ppo", Free, &["epochs", "minibatch"]),
     ("ppo", Free, &["learning_rate", "schedule", "kl_target"]),
     (
         "ppo",

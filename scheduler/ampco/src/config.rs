@@ -27,12 +27,6 @@ pub struct ScheduleConfig {
     pub granularity: Granularity,
     /// When convergence is tested. Default: as Algorithm 1 is written.
     pub arm: ArmKind,
-    /// With `arm = "after_rise"`: by which share of its minimum the smoothed reward has to rise. 0.1 is a third of the
-    /// rise seen in a trial whose style reward fell to 0.29 and then rose to 0.39.
-    pub rise_share: f64,
-    /// With `arm = "episodes_last"`: the share of the longest possible length that episodes have to last on average.
-    /// 0.8, so that a robot that still falls in the first half of its episodes is not yet past imitation.
-    pub last_share: f64,
     /// With `arm = "after_rise"` or `"episodes_last"`: iterations over which the reward, or the share, is smoothed.
     pub smoothing: f64,
     /// Whose mean and deviation Eq. 13 takes. Default: the batch in which convergence was found, as Algorithm 1's inputs
@@ -50,8 +44,6 @@ impl Default for ScheduleConfig {
             ceiling: CeilingKind::Bound,
             granularity: Granularity::Sample,
             arm: ArmKind::WindowFull,
-            rise_share: 0.1,
-            last_share: 0.8,
             smoothing: 20.0,
             bounds_from: BoundsSource::Batch,
         }
@@ -106,18 +98,6 @@ impl Section for ScheduleConfig {
             "alpha",
             self.alpha,
             "use a share between 0 and 1; the paper uses 0.95",
-        )?;
-        require(
-            self.rise_share.is_finite() && self.rise_share >= 0.0,
-            "rise_share",
-            self.rise_share,
-            "use a share of the minimum, 0 or more, such as 0.1",
-        )?;
-        require(
-            self.last_share > 0.0 && self.last_share <= 1.0,
-            "last_share",
-            self.last_share,
-            "use a share above 0 and up to 1 of the longest possible episode, such as 0.8",
         )?;
         require(
             self.smoothing.is_finite() && self.smoothing >= 1.0,

@@ -53,9 +53,7 @@ pub(super) fn toml(entries: &[Entry<'_>], shown: &Shown, other: Option<&Shown>) 
         }
         text.push_str(&format!("# {}\n", entry.key.sentence()));
         if let Some(other) = other {
-            let value = entry
-                .other
-                .map_or_else(|| "not set".to_owned(), Value::to_string);
+            let value = entry.other.map_or_else(|| "not set".to_owned(), in_a_line);
             let origin = match entry.other {
                 Some(_) => format!(", {}", other.origin(&entry.key.path)),
                 None => String::new(),
@@ -83,6 +81,17 @@ fn written(value: &Value) -> String {
         Value::Array(items) if items.iter().any(Value::is_table) => {
             let lines = items.iter().map(|item| format!("    {item},\n"));
             format!("[\n{}]", lines.collect::<String>())
+        }
+        value => in_a_line(value),
+    }
+}
+
+/// A value in one line; what moves as it is written by hand.
+fn in_a_line(value: &Value) -> String {
+    match value {
+        Value::Table(table) if table.keys().eq(["from", "samples", "to"]) => {
+            let [from, to, samples] = ["from", "to", "samples"].map(|key| &table[key]);
+            format!("{{ from = {from}, to = {to}, samples = {samples} }}")
         }
         value => value.to_string(),
     }

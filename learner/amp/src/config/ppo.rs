@@ -17,8 +17,6 @@ pub struct PpoConfig {
     pub reward_scale: f32,
     /// Clip range of the probability ratio. 0.2 in most trainers.
     pub clip: f32,
-    /// Weight of the entropy bonus; only `learned` exploration answers to it. The recipe's 0.
-    pub entropy_coefficient: f32,
     /// Passes over the batch. The recipe's.
     pub epochs: usize,
     /// Rows per step. The recipe's.
@@ -76,7 +74,6 @@ impl Default for PpoConfig {
             lambda: 0.95,
             reward_scale: 0.1,
             clip: 0.2,
-            entropy_coefficient: 0.0,
             epochs: 4,
             minibatch: 2048,
             learning_rate: 3e-4,
@@ -100,7 +97,6 @@ impl Section for PpoConfig {
             .share("lambda", self.lambda)
             .positive("reward_scale", self.reward_scale)
             .positive("clip", self.clip)
-            .not_negative("entropy_coefficient", self.entropy_coefficient)
             .count("epochs", self.epochs, 1000)
             .count("minibatch", self.minibatch, 1 << 24)
             .positive("learning_rate", self.learning_rate)

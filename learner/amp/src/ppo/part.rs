@@ -85,14 +85,6 @@ impl Ppo {
                 count,
             );
             sums.surrogate += f64::from(values(loss.clone())[0]);
-            let share = chunk.log_probs.len() as f32 / count as f32;
-            let loss = match self.log_sigma_limits {
-                Some(_) => {
-                    let bonus = self.config.entropy_coefficient * share;
-                    loss - surrogate::entropy(log_sigma.clone()) * bonus
-                }
-                None => loss,
-            };
             sums.lessons += chunk.lessons.iter().filter(|is| **is > 0.0).count();
             let loss = if self.config.symmetry_weight > 0.0 {
                 let asymmetry = surrogate::symmetry_loss(

@@ -97,9 +97,10 @@ const IMPULSE: &str = "randomization.impulse = { range = [0.0, 0.5], seconds = [
 const STRENGTH: &str = "randomization.strength = { from = 0.0, to = 1.0, samples = [0.0, 3e6] }";
 
 /// Keys that no choice is left of, and what they are now, as TOML; `none` of what is not there any more.
-pub(super) const GONE: [(&str, &str); 17] = [
+pub(super) const GONE: [(&str, &str); 20] = [
     ("ppo.value_clip", "none"),
     ("ppo.value_coefficient", "1.0"),
+    ("ppo.entropy_coefficient", "0.0"),
     ("ppo.kl_band", "1.5"),
     ("ppo.rate_factor", "1.3"),
     ("ppo.min_learning_rate", "1e-5"),
@@ -116,6 +117,8 @@ pub(super) const GONE: [(&str, &str); 17] = [
     ),
     ("policy.last_gain", "0.01"),
     ("policy.observation_floor", "0.02"),
+    ("scheduler.rise_share", "0.1"),
+    ("scheduler.last_share", "0.8"),
     ("exploration.min_sigma", "0.05"),
     ("exploration.max_sigma", "1.0"),
 ];

@@ -72,7 +72,6 @@ fn bad_values_are_named_with_a_remedy() {
         ("percentile = 95.0", "percentile"),
         ("percentile = nan", "percentile"),
         ("alpha = 1.0", "alpha"),
-        ("rise_share = -0.1", "rise_share"),
         ("smoothing = 0.0", "smoothing"),
         (
             "method = { amp = { style_weight = 1.2 } }",
