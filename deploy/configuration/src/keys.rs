@@ -9,8 +9,8 @@ use serde_json::{Map, Value};
 use crate::resolve::SECTIONS;
 
 /// The units that a first sentence may name.
-const UNITS: [&str; 11] = [
-    "m", "s", "m/s", "rad", "rad/s", "kg", "J", "1/J", "s²/m²", "min", "samples",
+const UNITS: [&str; 12] = [
+    "m", "s", "m/s", "rad", "rad/s", "kg", "J", "1/J", "s²/m²", "min", "samples", "degrees",
 ];
 
 /// A key of the configuration.
@@ -180,6 +180,8 @@ mod tests {
             ("run.deadlines.rollout_seconds", "s"),
             ("task.reward.track.kernel", "s²/m²"),
             ("task.gate.effort.weight", "1/J"),
+            ("task.ground.slope", "degrees"),
+            ("task.ground.bumps", "m"),
             ("task.termination.fall.height", "m"),
             ("task.termination.stray.seconds", "s"),
             ("task.termination.stray.grace_on_course", "s"),
