@@ -32,10 +32,12 @@ pub fn collect(
     let layout = rollout.layout;
     let mut timing = Timing::default();
     rollout.timeout_observations.fill(0.0);
+    rollout.timeout_critic.fill(0.0);
     for t in 0..layout.steps {
         let step = rollout.step(t);
         let started = Instant::now();
         step.observations.copy_from_slice(fleet.observations());
+        step.critic.copy_from_slice(fleet.critic_observations());
         step.features.copy_from_slice(fleet.features());
         policy.sample(
             step.observations,
@@ -56,7 +58,9 @@ pub fn collect(
             episode_steps: step.episode_steps,
             next_features: step.next_features,
             foot_forces: step.foot_forces,
+            measured: step.measured,
             timeout_observations: step.timeout_observations,
+            timeout_critic: step.timeout_critic,
         });
         timing.inference += (acted - started).as_secs_f32();
         timing.physics += (moved - acted).as_secs_f32();
@@ -65,5 +69,8 @@ pub fn collect(
     rollout
         .last_observations
         .copy_from_slice(fleet.observations());
+    rollout
+        .last_critic
+        .copy_from_slice(fleet.critic_observations());
     timing
 }

@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 use motion::{Dataset, MotionConfig};
-use protocol::RolloutLayout;
+use observation::{ObservationConfig, Tables};
+use protocol::{Lists, RolloutLayout};
 use run::{FleetConfig, Folder, RunConfig};
 use sim::{Physics, RandomizationConfig, Starts, TaskConfig};
 use tracing::warn;
@@ -17,6 +18,8 @@ pub struct ActorConfig {
     pub layout: RolloutLayout,
     /// Which engine moves the robots.
     pub physics: Physics,
+    /// What is seen of the robots.
+    pub tables: Tables,
     /// Commands, rewards, ends of episodes.
     pub task: TaskConfig,
     /// Table I.
@@ -45,13 +48,17 @@ impl ActorConfig {
                 "the reference motion is not what the run began with"
             );
         }
+        let observation: ObservationConfig = config.section()?;
+        let tables = observation.tables().context("section [observation]")?;
         Ok(Self {
             seed: run.seed,
             layout: RolloutLayout {
                 environments: fleet.environments_per_actor(),
                 steps: fleet.steps,
+                lists: Lists::from(&tables),
             },
             physics: fleet.physics,
+            tables,
             task: config.section()?,
             randomization: config.section()?,
             starts: dataset

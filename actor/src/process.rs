@@ -51,12 +51,10 @@ pub fn run(run_dir: &Path, index: u32) -> Result<()> {
             }
             if let Some(newest) = weights.newest()? {
                 let header = *newest.header();
-                if header.layout() != config.layout {
+                if let Some(difference) = header.unlike(&config.layout) {
                     bail!(
-                        "the learner wants rollouts of {:?}, this run's configuration says {:?}; \
-                         restart the group so that all processes read the same config.toml",
-                        header.layout(),
-                        config.layout
+                        "the learner wants other rollouts than this run's configuration says: {difference}; \
+                         restart the group so that all processes read the same config.toml"
                     );
                 }
                 if !obey(&newest, index, &config, &mut worker, &checkpoints)? {

@@ -45,7 +45,8 @@ impl Worker {
         checkpoints: &Checkpoints,
     ) -> Result<Self> {
         let seed = mix(mix(config.seed, u64::from(index) + 1), header.version);
-        let fleet = Fleet::new(
+        let fleet = Fleet::seen_by(
+            &config.tables,
             config.physics,
             &config.task.at(header.samples as f64),
             &config.randomization.at(header.samples as f64),
@@ -54,7 +55,7 @@ impl Worker {
             seed,
         )
         .context("setting up the fleet")?;
-        let (shape, clip) = network(header, weights)?;
+        let (shape, clip) = network(config, header, weights)?;
         let mut worker = Self {
             fleet,
             policy: Policy::new(shape, clip),
@@ -143,7 +144,7 @@ impl Worker {
             self.fleet
                 .set_randomization(config.randomization.at(samples));
         }
-        let (shape, clip) = network(header, flat.len())?;
+        let (shape, clip) = network(config, header, flat.len())?;
         if (self.policy.shape(), self.policy.clip()) != (&shape, clip) {
             self.policy = Policy::new(shape, clip);
         }
@@ -175,19 +176,23 @@ impl Worker {
 
 /// The policy's shape, if so many weights have it (nothing is reserved for one that they have not), and what it cuts
 /// observations to.
-fn network(header: &WeightsHeader, weights: usize) -> Result<(Shape, f32)> {
+fn network(config: &ActorConfig, header: &WeightsHeader, weights: usize) -> Result<(Shape, f32)> {
     let hidden: Vec<usize> = header
         .hidden()
         .iter()
         .map(|&width| width as usize)
         .collect();
-    let shape = Shape { hidden };
+    let shape = Shape {
+        inputs: config.tables.actor.width(),
+        hidden,
+    };
     ensure!(
         shape.fits(weights),
-        "policy version {} is of {weights} numbers, its header says hidden layers {:?}; use programs \
-         of one build",
+        "policy version {} is of {weights} numbers, its header says hidden layers {:?} for observations of {}; use \
+         programs of one build",
         header.version,
-        shape.hidden
+        shape.hidden,
+        shape.inputs
     );
     Policy::check_clip(header.observation_clip).with_context(|| {
         let version = header.version;
@@ -208,7 +213,8 @@ fn mix(seed: u64, salt: u64) -> u64 {
 mod tests {
     use std::time::Duration;
 
-    use protocol::RolloutLayout;
+    use observation::Tables;
+    use protocol::{Lists, RolloutLayout};
     use sim::{Physics, RandomizationConfig, StartConfig, Starts, TaskConfig};
     use vocabulary::Ramp;
 
@@ -222,7 +228,7 @@ mod tests {
             WeightsHeader::new(version, order, &[4], clip, layout, true)
         };
         let nowhere = Checkpoints::new(std::path::PathBuf::new());
-        let flat = vec![0.5; Shape::new(&[4]).len()];
+        let flat = vec![0.5; Shape::new(config.tables.actor.width(), &[4]).len()];
         let mut worker = Worker::begin(&config, 0, &header(0, 5.0), flat.len(), &nowhere).unwrap();
         worker.adopt(&config, &header(1, 1.5), &flat).unwrap();
         assert_eq!(worker.policy.clip(), 1.5);
@@ -247,8 +253,10 @@ mod tests {
             layout: RolloutLayout {
                 environments: 1,
                 steps: 8,
+                lists: Lists::default(),
             },
             physics: Physics::Rapier,
+            tables: Tables::default(),
             task: TaskConfig {
                 start: StartConfig {
                     reference_share: Ramp::moving(1.0, 0.5, [1e3, 3e3]),
@@ -271,7 +279,7 @@ mod tests {
         let config = growing();
         let folder = tempfile::tempdir().unwrap();
         let run = run::Folder::create(folder.path(), "clock").unwrap();
-        let shape = Shape { hidden: vec![4] };
+        let shape = Shape::new(config.tables.actor.width(), &[4]);
         let flat = vec![0.5; shape.len()];
         let header = |version, samples| {
             let order = WeightsOrder::Collect;

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import iceoryx2 as iox2
 
-PROTOCOL_VERSION = "4"
+PROTOCOL_VERSION = "5"
 PHASE_ONE = 2**64 - 1
 
 

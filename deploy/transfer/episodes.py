@@ -8,6 +8,17 @@ import numpy as np
 from .robot import Robot
 
 
+# The row of Table I that blurs a term.
+SENSORS = {
+    "linear_velocity": "linear_velocity_noise",
+    "angular_velocity": "angular_velocity_noise",
+    "gravity": "gravity_noise",
+    "joint_position": "joint_position_noise",
+    "joint_angle": "joint_position_noise",
+    "joint_velocity": "joint_velocity_noise",
+}
+
+
 class Randomization:
     """Table I: rows of policy.json as draws. Without a table every robot is the nominal one."""
 
@@ -38,20 +49,14 @@ class Randomization:
         size = self._uniform("impulse", 2) * self.random.choice([-1.0, 1.0], 2)
         return np.array([*size, 0.0])
 
-    def blur(self, observation, policy):
-        """Sensor noise, drawn anew each step."""
+    def blur(self, term, values):
+        """A term's values with sensor noise, drawn anew each step."""
         if self.table is None:
-            return observation
-        for term, row in (
-            ("linear_velocity", "linear_velocity_noise"),
-            ("angular_velocity", "angular_velocity_noise"),
-            ("projected_gravity", "gravity_noise"),
-            ("joint_position", "joint_position_noise"),
-            ("joint_velocity", "joint_velocity_noise"),
-        ):
-            place = policy.slice(term)
-            observation[place] += self._uniform(row, place.stop - place.start)
-        return observation
+            return values
+        row = SENSORS.get(term["name"])
+        least, greatest = self.table[row] if row else (0.0, 0.0)
+        noise = term["noise"]
+        return values + self.random.uniform(least - noise, greatest + noise, np.shape(values))
 
 
 def walk(model, policy, command, episodes, seconds, randomize, seed):
@@ -70,7 +75,7 @@ def walk(model, policy, command, episodes, seconds, randomize, seed):
     standing = list(range(episodes))
     count, squared, squared_yaw, energy, velocity, yaw_rate = 0, 0.0, 0.0, 0.0, np.zeros(2), 0.0
     for step in range(steps):
-        seen = [table.blur(robots[i].observe(), policy) for i in standing]
+        seen = [robots[i].observe(table.blur) for i in standing]
         actions = policy.actions(seen)
         for i, action in zip(list(standing), actions):
             robot = robots[i]

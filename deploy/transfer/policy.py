@@ -7,7 +7,10 @@ from pathlib import Path
 import numpy as np
 import onnxruntime
 
-VERSION = 2
+VERSION = 3
+
+# Names of terms in descriptions before version 3.
+OLDER_NAMES = {"pelvis_height": "height", "projected_gravity": "gravity"}
 
 
 class ExportError(Exception):
@@ -15,7 +18,7 @@ class ExportError(Exception):
 
 
 class Policy:
-    """Actions `[n, 23]` of observations `[n, 82]`, and everything in policy.json as `description`."""
+    """Actions of observations, a row each, and everything in policy.json as `description`."""
 
     def __init__(self, folder):
         self.folder = Path(folder)
@@ -57,10 +60,13 @@ class Policy:
         """One number per joint, in the one joint order."""
         return np.array([joint[field] for joint in self.description["joints"]], dtype=np.float64)
 
-    def slice(self, name):
-        """Where a term of the observation is."""
-        term = next(term for term in self.description["observation"] if term["name"] == name)
-        return slice(term["start"], term["start"] + term["length"])
+    def terms(self):
+        """The terms of an observation in order, as of the newest version."""
+        terms = []
+        for term in self.description["observation"]:
+            term = {"past": 0, "noise": 0.0, "clip": None} | term
+            terms.append(term | {"name": OLDER_NAMES.get(term["name"], term["name"])})
+        return terms
 
     def title(self):
         """Run and iteration."""

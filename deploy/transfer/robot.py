@@ -8,6 +8,8 @@ import copy
 import mujoco
 import numpy as np
 
+from .policy import ExportError
+
 TORSO = "torso_link"
 SOLES = ("left_ankle_roll_link_sole", "right_ankle_roll_link_sole")
 KEYFRAME = "standing"
@@ -30,6 +32,8 @@ class Robot:
         self.joints = len(self.default)
         self.previous_action = np.full(self.joints, control["first_previous_action"])
         self.command = np.zeros(3)
+        # What was seen in the steps before, by term, the newest first.
+        self.seen = {}
         if variation:
             self._vary(variation)
         self.stand()
@@ -131,22 +135,40 @@ class Robot:
             height, least = task["fall_height"], task["fall_upright"]
         return not (self.data.qpos[2] >= height and upright >= least)
 
-    def observe(self):
-        """What the policy sees now, without noise (82 numbers)."""
-        seen = np.zeros(sum(term["length"] for term in self.policy.description["observation"]))
+    def measured(self):
+        """Every term that can be told here, in its unit."""
         base = rotation(self.data.qpos[3:FREE])
-        for name, value in (
-            ("pelvis_height", self.data.qpos[2]),
-            ("linear_velocity", base.T @ self.data.qvel[:3]),
-            ("angular_velocity", self.data.qvel[3:6]),
-            ("projected_gravity", self.gravity()),
-            ("command", self.command),
-            ("joint_position", self.data.qpos[FREE:] - self.default),
-            ("joint_velocity", self.data.qvel[6:]),
-            ("previous_action", self.previous_action),
-        ):
-            seen[self.policy.slice(name)] = value
-        return seen
+        return {
+            "height": self.data.qpos[2:3],
+            "linear_velocity": base.T @ self.data.qvel[:3],
+            "angular_velocity": self.data.qvel[3:6],
+            "gravity": self.gravity(),
+            "command": self.command,
+            "joint_position": self.data.qpos[FREE:] - self.default,
+            "joint_angle": self.data.qpos[FREE:],
+            "joint_velocity": self.data.qvel[6:],
+            "previous_action": self.previous_action,
+        }
+
+    def observe(self, blur=lambda term, values: values):
+        """What the policy sees now, once in a control step; `blur` adds the noise of sensors."""
+        measured, row = self.measured(), []
+        for term in self.policy.terms():
+            if term["name"] not in measured:
+                raise ExportError(
+                    f"{self.policy.folder}/policy.json: the policy sees `{term['name']}`, which is not told here: "
+                    "train one whose observation.actor.terms a robot can measure"
+                )
+            now = np.array(blur(term, measured[term["name"]]), dtype=np.float64)
+            if term["clip"] is not None:
+                now = np.clip(now, -term["clip"], term["clip"])
+            now = now * term["scale"]
+            # The first stands for those before it.
+            before = self.seen.get(term["name"], [now] * term["past"])
+            frames = [now, *before][: 1 + term["past"]]
+            self.seen[term["name"]] = frames
+            row += frames
+        return np.concatenate(row)
 
     def sole_force(self):
         """Normal force of the floor on both soles, N."""

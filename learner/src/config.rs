@@ -6,7 +6,8 @@ use amp::{IterationReport, LearningConfig};
 use ampco::ScheduleConfig;
 use anyhow::{Context, Result};
 use motion::{Dataset, MotionConfig};
-use protocol::RolloutLayout;
+use observation::{ObservationConfig, Tables};
+use protocol::{Lists, RolloutLayout};
 use run::{Config, FleetConfig, Folder, Mode, RunConfig};
 use toml::Value;
 use tracing::warn;
@@ -19,6 +20,8 @@ pub(crate) struct LearnerConfig {
     pub(crate) fleet: FleetConfig,
     pub(crate) learning: LearningConfig,
     pub(crate) schedule: ScheduleConfig,
+    /// What is seen of the robots.
+    pub(crate) tables: Tables,
     pub(crate) experts: Dataset,
     /// Control steps of the longest possible episode.
     pub(crate) episode_steps: f64,
@@ -41,6 +44,8 @@ impl LearnerConfig {
                 "the reference motion is not what the run began with"
             );
         }
+        let observation: ObservationConfig = config.section()?;
+        let tables = observation.tables().context("section [observation]")?;
         Ok(Self {
             run: config.section()?,
             fleet: config.section()?,
@@ -51,7 +56,8 @@ impl LearnerConfig {
                 discriminator: config.section()?,
             },
             schedule: config.section()?,
-            experts,
+            experts: experts.seen_as(&tables.discriminator),
+            tables,
             episode_steps: config
                 .given("task.termination.time_out.steps")
                 .and_then(|steps| steps.as_integer())
@@ -83,6 +89,7 @@ impl LearnerConfig {
         RolloutLayout {
             environments: self.fleet.environments_per_actor(),
             steps: self.fleet.steps,
+            lists: Lists::from(&self.tables),
         }
     }
 }

@@ -3,10 +3,11 @@
 //! They are of the robots that are told to go forward or back, if there are any. Hips of a robot that steps aside, turns
 //! or stands are no less in phase than out of it, and the mean of all robots would be a shuffle.
 
-use amp::{Batch, Segment};
+use crate::robot::place;
+use amp::{Batch, Place, Segment};
 use g1::gait::{Conduct, Feet, Verdict, speed_use};
-use g1::observation::{ANGULAR_VELOCITY, COMMAND, GRAVITY, state_of};
-use g1::{FEATURES, OBSERVATION};
+use g1::observation::{ANGULAR_VELOCITY, LINEAR_VELOCITY, state_of};
+use observation::Tables;
 use tracing::{info, warn};
 
 /// Steps per second.
@@ -21,6 +22,45 @@ const SLOWEST: f32 = 0.2;
 /// Iterations that are judged together in the log: a verdict of a single batch flickers.
 const JUDGED_TOGETHER: u64 = 10;
 
+/// Where a batch holds what measures are made of.
+#[derive(Clone, Debug)]
+pub(crate) struct Places {
+    command: Place,
+    gravity: Place,
+    features: Place,
+}
+
+impl Places {
+    /// With robots that are seen as lists say.
+    pub(crate) fn of(tables: &Tables) -> Self {
+        let places = tables.places();
+        Self {
+            command: place(places.command),
+            gravity: place(places.gravity),
+            features: place(places.features),
+        }
+    }
+
+    fn command(&self, batch: &Batch, row: usize) -> [f32; 3] {
+        three(batch.at(row, &self.command))
+    }
+
+    /// Direction of gravity in the base frame after a row's step, of which the row `next` is the one after it. As it was
+    /// observed where the policy sees it: with sensor noise it is off by up to 0.05, which moves feet by centimetres but
+    /// not on average.
+    fn gravity(&self, batch: &Batch, row: usize, next: usize) -> [f32; 3] {
+        let row = match self.gravity {
+            Place::Observation(_) => next,
+            Place::Features(_) | Place::Measured(_) => row,
+        };
+        three(batch.at(row, &self.gravity))
+    }
+}
+
+fn three(numbers: &[f32]) -> [f32; 3] {
+    [numbers[0], numbers[1], numbers[2]]
+}
+
 /// All measures of some robots' steps together.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Measures {
@@ -34,10 +74,10 @@ pub(crate) struct Measures {
 
 impl Measures {
     /// Of a batch, with the mean length (steps) of its episodes that ended, if robots fell in them.
-    pub(crate) fn of(batch: &Batch, episode_length: Option<f64>) -> Self {
-        let mut measures = Self::of_those(batch, is_along);
+    pub(crate) fn of(batch: &Batch, episode_length: Option<f64>, places: &Places) -> Self {
+        let mut measures = Self::of_those(batch, places, is_along);
         if measures.steps == 0.0 {
-            measures = Self::of_those(batch, |_| true);
+            measures = Self::of_those(batch, places, |_| true);
         }
         if let Some(steps) = episode_length {
             measures.seconds_upright = steps / CONTROL_HZ;
@@ -47,11 +87,11 @@ impl Measures {
     }
 
     /// Of the steps whose command is of a kind.
-    fn of_those(batch: &Batch, counts: impl Fn([f32; 3]) -> bool) -> Self {
+    fn of_those(batch: &Batch, places: &Places, counts: impl Fn([f32; 3]) -> bool) -> Self {
         let mut measures = Self::default();
         let mut first = 0;
         for segment in batch.segments() {
-            measures.add(batch, first, *segment, &counts);
+            measures.add(batch, first, *segment, places, &counts);
             first += segment.rows();
         }
         measures
@@ -63,22 +103,26 @@ impl Measures {
         batch: &Batch,
         first: usize,
         segment: Segment,
+        places: &Places,
         counts: &impl Fn([f32; 3]) -> bool,
     ) {
         let robots = segment.environments;
         for step in 0..segment.steps {
             for robot in 0..robots {
                 let row = first + step * robots + robot;
-                let seen = &batch.observations[row * OBSERVATION..][..OBSERVATION];
-                let command = std::array::from_fn(|i| seen[COMMAND.start + i]);
+                let command = places.command(batch, row);
                 if !counts(command) {
                     continue;
                 }
                 let began = step == 0 || batch.ends[row - robots] != 0.0;
                 let before = (!began).then(|| forces(batch, row - robots));
-                let features = &batch.next_features[row * FEATURES..][..FEATURES];
+                let features = batch.at(row, &places.features);
                 // Upright robots: base and heading frame differ by the small tilt.
-                let velocity = [features[1], features[2], features[ANGULAR_VELOCITY.end - 1]];
+                let velocity = [
+                    features[LINEAR_VELOCITY.start],
+                    features[LINEAR_VELOCITY.start + 1],
+                    features[ANGULAR_VELOCITY.end - 1],
+                ];
                 let landed = forces(batch, row);
                 self.conduct
                     .add(command, velocity, features, landed, before);
@@ -86,7 +130,7 @@ impl Measures {
                 self.speed_use += f64::from(speed_use(features));
                 let goes_on = step + 1 < segment.steps && batch.ends[row] == 0.0;
                 if robot % FEET_OF_EVERY == 0 && goes_on {
-                    let state = state_of(features, gravity(batch, row + robots));
+                    let state = state_of(features, places.gravity(batch, row, row + robots));
                     self.feet.add(&state, forces(batch, row), before);
                 }
             }
@@ -130,13 +174,6 @@ fn is_along([forward, left, _]: [f32; 3]) -> bool {
 /// Left and right foot force in a row, N.
 fn forces(batch: &Batch, row: usize) -> [f32; 2] {
     [batch.foot_forces[2 * row], batch.foot_forces[2 * row + 1]]
-}
-
-/// Direction of gravity in the base frame as it was observed: the features do not have it. With
-/// sensor noise it is off by up to 0.05, which moves feet by centimetres but not on average.
-fn gravity(batch: &Batch, row: usize) -> [f32; 3] {
-    let seen = &batch.observations[row * OBSERVATION..][..OBSERVATION];
-    std::array::from_fn(|axis| seen[GRAVITY.start + axis])
 }
 
 /// Says in the log what the gait has become.

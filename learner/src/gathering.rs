@@ -82,7 +82,26 @@ impl Gathered {
 /// The one copy: every block of the rollout to its segment's rows.
 pub(crate) fn copy(rollout: &Rollout, batch: &mut Batch, segment: usize) {
     let from = rollout.view();
+    let wide = Wide {
+        observation: batch.widths().observation,
+        own: rollout.layout().lists.widths.critic,
+        whole: batch.widths().critic,
+    };
     let to = batch.segment_mut(segment);
+    let shared = from.observations;
+    join(to.critic, shared, from.critic, wide);
+    join(
+        to.last_critic,
+        from.last_observations,
+        from.last_critic,
+        wide,
+    );
+    join(
+        to.timeout_critic,
+        from.timeout_observations,
+        from.timeout_critic,
+        wide,
+    );
     to.observations.copy_from_slice(from.observations);
     to.actions.copy_from_slice(from.actions);
     to.means.copy_from_slice(from.means);
@@ -95,14 +114,59 @@ pub(crate) fn copy(rollout: &Rollout, batch: &mut Batch, segment: usize) {
     to.features.copy_from_slice(from.features);
     to.next_features.copy_from_slice(from.next_features);
     to.foot_forces.copy_from_slice(from.foot_forces);
+    to.measured.copy_from_slice(from.measured);
     to.last_observations.copy_from_slice(from.last_observations);
     to.timeout_observations
         .copy_from_slice(from.timeout_observations);
 }
 
+/// Numbers of rows.
+#[derive(Clone, Copy)]
+struct Wide {
+    /// What the policy sees.
+    observation: usize,
+    /// What the critic sees beside.
+    own: usize,
+    /// All that the critic sees: its own alone, or that behind what the policy sees; 0 where it sees no more.
+    whole: usize,
+}
+
+/// Whole rows of the critic's, of what it shares with the policy and its own.
+fn join(out: &mut [f32], observations: &[f32], own: &[f32], wide: Wide) {
+    if wide.whole == 0 {
+        return;
+    }
+    let shared = wide.whole - wide.own;
+    let rows = observations
+        .chunks_exact(wide.observation)
+        .zip(own.chunks_exact(wide.own));
+    for (out, (seen, own)) in out.chunks_exact_mut(wide.whole).zip(rows) {
+        out[..shared].copy_from_slice(&seen[..shared]);
+        out[shared..].copy_from_slice(own);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_critics_row_is_the_policys_and_its_own_or_its_own_alone() {
+        let (seen, own) = ([1.0, 2.0, 3.0, 4.0], [5.0, 6.0]);
+        let joined = |whole: usize| {
+            let mut out = vec![0.0; 2 * whole];
+            let wide = Wide {
+                observation: 2,
+                own: 1,
+                whole,
+            };
+            join(&mut out, &seen, &own, wide);
+            out
+        };
+        assert_eq!(joined(3), [1.0, 2.0, 5.0, 3.0, 4.0, 6.0]);
+        assert_eq!(joined(1), [5.0, 6.0]);
+        assert!(joined(0).is_empty());
+    }
 
     #[test]
     fn terms_are_averaged_over_the_rollouts_that_tell_them() {

@@ -189,11 +189,17 @@ impl Intake {
         };
         let oldest = now.version.saturating_sub(lag);
         if rollout.layout() != self.terms.layout {
+            let said = |layout: RolloutLayout| {
+                format!(
+                    "{} environments by {} steps",
+                    layout.environments, layout.steps
+                )
+            };
             bail!(
-                "actor {} sends {:?}, this run's configuration says {:?}; restart the group",
+                "actor {} sends {}, this run's configuration says {}; restart the group",
                 header.actor,
-                rollout.layout(),
-                self.terms.layout
+                said(rollout.layout()),
+                said(self.terms.layout)
             );
         }
         let entry = self.ledger.enter(&header, self.learner, oldest);

@@ -42,7 +42,8 @@ impl Lines {
         )?;
         let schedule = Schedule::new(config.schedule.clone()).context("section [scheduler]")?;
         let terms = config.terms();
-        let rollouts = RolloutSubscriber::new(&node).context("opening the rollout stream")?;
+        let rollouts = RolloutSubscriber::new(&node, terms.layout.lists)
+            .context("opening the rollout stream")?;
         let directives = DirectiveSubscriber::new(&node).context("opening the directive stream")?;
         let patience = if terms.lockstep {
             Duration::from_secs_f64(config.run.deadlines.directive_seconds)

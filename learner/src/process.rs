@@ -12,11 +12,12 @@ use vocabulary::Cause;
 
 use crate::config::LearnerConfig;
 use crate::cores::Cores;
-use crate::gait::{Measures, Watch};
+use crate::gait::{Measures, Places, Watch};
 use crate::gathering::Gathered;
 use crate::guidance::Guide;
 use crate::lines::Lines;
 use crate::record::{self, DecisionFigures, Record, Refused, Timing, Traffic};
+use crate::robot::robot;
 use crate::state::State;
 
 /// Updates refused in a row after which something is broken for good.
@@ -33,17 +34,18 @@ pub fn run(run_dir: &Path, resume: bool) -> Result<()> {
     let shutdown = Shutdown::on_signals()?;
     let mut state = State::begin(&folder, &config, resume)?;
     let mut lines = Lines::open(&folder, &config, &mut state)?;
+    let mut batch = Batch::new(robot(&config.tables).widths());
     let mut learner = Loop {
         started: Instant::now(),
         refusals: 0,
         watch: Watch::default(),
         saturation: Saturation::default(),
+        places: Places::of(&config.tables),
         cores: Cores::default(),
         held,
         folder,
         config,
     };
-    let mut batch = Batch::default();
     info!(iteration = state.iteration, resume, "learning");
 
     let mut order = if resume {
@@ -104,6 +106,8 @@ struct Loop {
     refusals: u64,
     watch: Watch,
     saturation: Saturation,
+    /// Where a batch holds what gait measures are made of.
+    places: Places,
     cores: Cores,
     held: Lock,
 }
@@ -164,7 +168,7 @@ impl Loop {
                 // Episodes that mostly ended otherwise say nothing of how long robots stay up.
                 let mostly_falls = 2 * ended.by(Cause::Fall) > ended.total();
                 let fell_after = report.episode_length.filter(|_| mostly_falls);
-                let measures = Measures::of(batch, fell_after);
+                let measures = Measures::of(batch, fell_after, &self.places);
                 self.watch.take(state.iteration, &measures);
                 self.tell_saturation(report);
                 let idle_share = self.cores.idle_share();

@@ -6,7 +6,8 @@ use std::time::Instant;
 
 use amp::{Batch, IterationReport, Learning, LearningError, PpoConfig};
 use ampco::Weighting;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
+use observation::{ObservationConfig, Print, Tables};
 use protocol::RewardReport;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -60,9 +61,13 @@ impl State {
     /// A new learner, or with `resume` the one of the newest checkpoint. What `metrics.jsonl` says
     /// of later iterations is dropped: they are about to happen again.
     pub(crate) fn begin(folder: &Folder, config: &LearnerConfig, resume: bool) -> Result<Self> {
-        let learning = Learning::new(config.learning.clone(), robot(), config.run.seed)
-            .context("setting up the networks")?
-            .with_clock(seconds);
+        let learning = Learning::new(
+            config.learning.clone(),
+            robot(&config.tables),
+            config.run.seed,
+        )
+        .context("setting up the networks")?
+        .with_clock(seconds);
         let mut state = Self {
             learning,
             iteration: 0,
@@ -91,7 +96,7 @@ impl State {
         }
         if state.iteration == 0 && !config.run.from.is_empty() {
             let from = Path::new(&config.run.from);
-            state.begin_with(&Checkpoint::open(from)?)?;
+            state.begin_with(&Checkpoint::open(from)?, &config.tables)?;
             info!(from = %from.display(), "begun with the policy of another run");
         }
         run::metrics::truncate_after(&folder.metrics_path(), state.iteration)?;
@@ -100,8 +105,19 @@ impl State {
 
     /// Takes another run's policy over, and nothing else; of a shipped one what it has: the actor, and the critic unless
     /// it was shipped by an older program.
-    fn begin_with(&mut self, checkpoint: &Checkpoint) -> Result<()> {
-        if let Some(part) = checkpoint.part(LEARNING) {
+    fn begin_with(&mut self, checkpoint: &Checkpoint, tables: &Tables) -> Result<()> {
+        let theirs = lists(checkpoint)?;
+        let ours = Print::of_actor(tables);
+        if let Some(difference) = ours.difference(&Print::of_actor(&theirs)) {
+            bail!(
+                "run.from: that policy does not see what this run's is to see: {difference}; set observation.actor as it was"
+            );
+        }
+        let same_critic = Print::of_critic(tables) == Print::of_critic(&theirs);
+        if !same_critic {
+            info!("the critic is to see something else than that one did, and begins anew");
+        }
+        if let Some(part) = checkpoint.part(LEARNING).filter(|_| same_critic) {
             self.learning.load_policy(part).with_context(|| {
                 format!("run.from: reading its `{LEARNING}`; set policy.hidden as it was")
             })?;
@@ -110,7 +126,7 @@ impl State {
         let policy = checkpoint.part(POLICY).with_context(|| {
             format!("run.from: the checkpoint has neither `{LEARNING}` nor `{POLICY}`")
         })?;
-        let critic = checkpoint.part(CRITIC).map(numbers);
+        let critic = checkpoint.part(CRITIC).filter(|_| same_critic).map(numbers);
         self.learning
             .load_snapshot(&numbers(policy), critic.as_deref())
             .with_context(|| format!("run.from: reading its `{POLICY}` and `{CRITIC}`"))
@@ -158,9 +174,10 @@ impl State {
         self.iteration += 1;
         let generator = &mut self.generator;
         let judge = &config.learning.discriminator;
+        let features = config.experts.width();
         let mut experts = |rows: &mut [f32]| {
-            for row in rows.chunks_exact_mut(judge.width()) {
-                let (states, seen) = row.split_at_mut(judge.frames * amp::FEATURES);
+            for row in rows.chunks_exact_mut(judge.width(features)) {
+                let (states, seen) = row.split_at_mut(judge.frames * features);
                 let command = config
                     .experts
                     .sample_window(generator, judge.spacing, states);
@@ -276,10 +293,25 @@ fn seconds() -> f64 {
 /// What a checkpoint must fit: the widths of all networks.
 fn shape(config: &LearnerConfig) -> String {
     let learning = &config.learning;
-    format!(
+    let mut shape = format!(
         "policy {:?} critic {:?} discriminator {:?}",
         learning.policy.hidden, learning.policy.critic_hidden, learning.discriminator.hidden
-    )
+    );
+    // Checkpoints of before there were lists are of the paper's.
+    let print = Print::of(&config.tables);
+    if print != Print::of(&Tables::default()) {
+        shape.push_str(&format!(" lists {:08x}", print.digest()));
+    }
+    shape
+}
+
+/// The lists that a checkpoint was learned with: the paper's where it does not say.
+fn lists(checkpoint: &Checkpoint) -> Result<Tables> {
+    let Some(config) = checkpoint.config()? else {
+        return Ok(Tables::default());
+    };
+    let observation: ObservationConfig = config.section()?;
+    observation.tables().context("section [observation]")
 }
 
 #[cfg(test)]

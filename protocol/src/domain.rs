@@ -18,7 +18,7 @@ use iceoryx2::prelude::{CallbackProgression, Config, FilePath, NodeState, Semant
 pub(crate) type Service = iceoryx2::prelude::ipc_threadsafe::Service;
 
 /// Version of everything that crosses a process boundary: headers, layouts, limits of the streams.
-pub const PROTOCOL_VERSION: u32 = 4;
+pub const PROTOCOL_VERSION: u32 = 5;
 
 /// Folder of the system in which POSIX shared memory appears as files.
 pub(crate) const SHARED_MEMORY: &str = "/dev/shm";

@@ -70,6 +70,17 @@ pub enum PortError {
         /// Numbers found.
         got: usize,
     },
+    /// A rollout whose rows hold something else than this process' lists say.
+    #[error(
+        "actor {actor} sends other observations than this run's configuration says: {difference}; restart the group so \
+         that all processes read the same config.toml"
+    )]
+    Lists {
+        /// Index of the actor.
+        actor: u32,
+        /// How its lists differ from ours.
+        difference: String,
+    },
     /// Anything else that the middleware or the system refused.
     #[error("stream {stream}: {action}: {cause}")]
     System {

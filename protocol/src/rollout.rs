@@ -5,6 +5,7 @@
 
 mod layout;
 mod ledger;
+mod lists;
 mod terms;
 
 use std::fmt;
@@ -14,6 +15,7 @@ use iceoryx2::prelude::ZeroCopySend;
 
 pub use layout::{Flaw, RolloutLayout, RolloutStep, RolloutStepMut, RolloutView, RolloutViewMut};
 pub use ledger::{Entry, Ledger, Totals};
+pub use lists::{Lists, SentPrint};
 pub use terms::{MAX_TERMS, TermMean};
 
 use crate::error::PortError;
@@ -23,7 +25,7 @@ use crate::stream::{self, Spec, Stream};
 
 /// Who collected a rollout, under which policy, and how long it took.
 ///
-/// `actor`, `environments`, `steps`, `incarnation` and `sequence` are filled by
+/// `actor`, `environments`, `steps`, `incarnation`, `sequence` and `lists` are filled by
 /// [`RolloutPublisher::send`]; the caller gives the rest.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, ZeroCopySend)]
@@ -55,6 +57,8 @@ pub struct RolloutHeader {
     pub collect_seconds: f32,
     /// Means of the task's terms over all steps; read them with [`Self::terms`].
     pub terms: [TermMean; MAX_TERMS],
+    /// What the rows hold.
+    pub lists: SentPrint,
 }
 
 impl RolloutHeader {
@@ -66,11 +70,18 @@ impl RolloutHeader {
         terms::read(&self.terms)
     }
 
-    /// Sizes, if a message of `numbers` numbers has them.
-    pub fn layout(&self, numbers: usize) -> Result<RolloutLayout, PortError> {
+    /// Sizes, if a message of `numbers` numbers has them and its rows hold what `lists` say.
+    pub fn layout(&self, lists: Lists, numbers: usize) -> Result<RolloutLayout, PortError> {
+        if let Some(difference) = self.lists.difference(&lists) {
+            return Err(PortError::Lists {
+                actor: self.actor,
+                difference,
+            });
+        }
         let layout = RolloutLayout {
             environments: self.environments as usize,
             steps: self.steps as usize,
+            lists,
         };
         match layout.checked_len() {
             Some(expected) if expected == numbers && numbers > 0 => Ok(layout),
@@ -170,6 +181,7 @@ impl RolloutPublisher {
             steps: self.layout.steps as u32,
             incarnation: self.incarnation,
             sequence: self.sequence,
+            lists: self.layout.lists.into(),
             ..header
         };
         self.sequence += 1;
@@ -239,21 +251,24 @@ impl RolloutLoan {
 #[derive(Debug)]
 pub struct RolloutSubscriber {
     port: Subscriber<Rollouts>,
+    lists: Lists,
 }
 
 impl RolloutSubscriber {
-    /// Opens the stream; fails with [`PortError::Taken`] while another learner lives.
-    pub fn new(node: &Node) -> Result<Self, PortError> {
+    /// Opens the stream for rows that hold what `lists` say; fails with [`PortError::Taken`] while another learner
+    /// lives.
+    pub fn new(node: &Node, lists: Lists) -> Result<Self, PortError> {
         let port = Subscriber::open(node)?;
-        Ok(Self { port })
+        Ok(Self { port, lists })
     }
 
-    /// The next rollout, if there is one. Of each actor two may be held at a time: copy and drop.
+    /// The next rollout, if there is one; one of other lists is an error ([`PortError::Lists`]). Of each actor two may be held at a time: copy and drop.
     pub fn receive(&self) -> Result<Option<Rollout>, PortError> {
         let Some(sample) = self.port.receive()? else {
             return Ok(None);
         };
-        let layout = sample.user_header().layout(sample.payload().len())?;
+        let header = sample.user_header();
+        let layout = header.layout(self.lists, sample.payload().len())?;
         Ok(Some(Rollout { sample, layout }))
     }
 

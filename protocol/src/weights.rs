@@ -12,7 +12,7 @@ use iceoryx2::prelude::ZeroCopySend;
 use crate::error::PortError;
 use crate::port::{Publisher, Received, Subscriber, Wake};
 use crate::presence::Node;
-use crate::rollout::RolloutLayout;
+use crate::rollout::{RolloutLayout, SentPrint};
 use crate::stream::{self, Spec, Stream};
 
 /// Most hidden layers that a header can describe.
@@ -58,6 +58,8 @@ pub struct WeightsHeader {
     pub lockstep: u32,
     /// What normalised observations are cut to, ±: the weights mean nothing without it.
     pub observation_clip: f32,
+    /// What the rows of the rollouts wanted hold; the weights are as wide as it says.
+    pub lists: SentPrint,
 }
 
 impl WeightsHeader {
@@ -93,6 +95,7 @@ impl WeightsHeader {
             steps: layout.steps as u32,
             lockstep: u32::from(lockstep),
             observation_clip,
+            lists: layout.lists.into(),
         }
     }
 
@@ -118,12 +121,16 @@ impl WeightsHeader {
         &self.hidden[..(self.layers as usize).min(MAX_HIDDEN_LAYERS)]
     }
 
-    /// Sizes of the rollouts wanted.
-    pub fn layout(&self) -> RolloutLayout {
-        RolloutLayout {
-            environments: self.environments as usize,
-            steps: self.steps as usize,
+    /// How the rollouts wanted differ from those of a layout, in words; none if they do not.
+    pub fn unlike(&self, layout: &RolloutLayout) -> Option<String> {
+        let (environments, steps) = (self.environments as usize, self.steps as usize);
+        if (environments, steps) != (layout.environments, layout.steps) {
+            return Some(format!(
+                "{environments} environments by {steps} steps, not {} by {}",
+                layout.environments, layout.steps
+            ));
         }
+        self.lists.difference(&layout.lists)
     }
 
     /// Whether each version is answered by exactly one rollout.
@@ -238,21 +245,46 @@ impl Weights {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rollout::Lists;
 
-    const LAYOUT: RolloutLayout = RolloutLayout {
-        environments: 64,
-        steps: 24,
-    };
+    fn layout() -> RolloutLayout {
+        RolloutLayout {
+            environments: 64,
+            steps: 24,
+            lists: Lists::default(),
+        }
+    }
 
     #[test]
     fn a_header_says_back_what_it_was_made_of() {
         let order = WeightsOrder::RestoreThenCollect;
-        let header = WeightsHeader::new(9, order, &[256, 128, 64], 2.5, LAYOUT, true).after(4_608);
+        let header =
+            WeightsHeader::new(9, order, &[256, 128, 64], 2.5, layout(), true).after(4_608);
         assert_eq!(header.order(), Some(order));
         assert_eq!((header.version, header.samples), (9, 4_608));
         assert_eq!(header.hidden(), [256, 128, 64]);
         assert_eq!(header.observation_clip, 2.5);
-        assert_eq!(header.layout(), LAYOUT);
+        assert_eq!(header.unlike(&layout()), None);
+        let larger = RolloutLayout {
+            environments: 65,
+            ..layout()
+        };
+        let said = header.unlike(&larger).unwrap();
+        assert_eq!(said, "64 environments by 24 steps, not 65 by 24");
+        let config: observation::ObservationConfig = Default::default();
+        let blind = observation::ObservationConfig {
+            critic: observation::SeenList {
+                terms: vec!["height".to_owned()],
+                ..config.critic
+            },
+            ..config
+        };
+        let other = RolloutLayout {
+            lists: (&blind.tables().unwrap()).into(),
+            ..layout()
+        };
+        let said = header.unlike(&other).unwrap();
+        assert!(said.contains("observation.critic lacks height"), "{said}");
         assert!(header.is_lockstep());
     }
 

@@ -4,7 +4,7 @@ use ampco::{Numbers, Report, Schedule, ScheduleConfig, Weighting};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use protocol::{
-    Directive, Entry, Ledger, MAX_HIDDEN_LAYERS, RolloutHeader, RolloutLayout, WeightsHeader,
+    Directive, Entry, Ledger, Lists, MAX_HIDDEN_LAYERS, RolloutHeader, RolloutLayout, WeightsHeader,
 };
 use vocabulary::Cause;
 
@@ -51,7 +51,12 @@ fn a_rollout_s_header_promises_what_the_message_holds_or_is_refused() {
             steps,
             ..RolloutHeader::default()
         };
-        match header.layout(numbers) {
+        let lists = Lists::default();
+        let header = RolloutHeader {
+            lists: lists.into(),
+            ..header
+        };
+        match header.layout(lists, numbers) {
             Ok(layout) => assert_eq!(layout.checked_len(), Some(numbers)),
             Err(error) => assert_clear(&error),
         }
@@ -60,17 +65,18 @@ fn a_rollout_s_header_promises_what_the_message_holds_or_is_refused() {
 
 #[test]
 fn a_rollout_s_numbers_are_sound_or_the_first_that_is_not_is_named() {
-    const LAYOUT: RolloutLayout = RolloutLayout {
+    let layout = RolloutLayout {
         environments: 2,
         steps: 2,
+        lists: Lists::default(),
     };
-    let inputs = vec((0..LAYOUT.len(), floats()), 0..4);
+    let inputs = vec((0..layout.len(), floats()), 0..4);
     always(1000, &inputs, |changes| {
-        let mut numbers = vec![0.0; LAYOUT.len()];
+        let mut numbers = vec![0.0; layout.len()];
         for (place, number) in changes {
             numbers[place] = number;
         }
-        let view = LAYOUT.view(&numbers);
+        let view = layout.view(&numbers);
         match view.flaw() {
             Some(flaw) => assert!(!flaw.field.is_empty() && flaw.row < 4),
             None => {
@@ -146,13 +152,19 @@ fn a_weights_header_says_what_it_is_or_is_refused() {
             };
             assert_eq!(header.order().is_some(), order < 4);
             assert!(header.hidden().len() <= MAX_HIDDEN_LAYERS);
-            let _ = header.layout().checked_len();
+            // Nobody's lists are all zeros.
+            let layout = RolloutLayout {
+                environments: environments as usize,
+                steps: steps as usize,
+                lists: Lists::default(),
+            };
+            assert!(header.unlike(&layout).is_some());
             let widths: Vec<usize> = header
                 .hidden()
                 .iter()
                 .map(|&width| width as usize)
                 .collect();
-            let shape = policy::Shape::new(&widths);
+            let shape = policy::Shape::new(Lists::default().widths.observation, &widths);
             if shape.fits(numbers) {
                 if let Err(error) = policy::Policy::check_clip(observation_clip) {
                     return assert_clear(&error);

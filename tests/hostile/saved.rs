@@ -4,6 +4,7 @@ use std::fs;
 
 use amp::{DiscriminatorConfig, Learning, LearningConfig, PolicyConfig};
 use motion::{Dataset, MotionConfig};
+use observation::Tables;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use run::{Checkpoint, Checkpoints, Contents, metrics};
@@ -74,7 +75,7 @@ fn a_damaged_state_of_the_learner_is_refused_and_leaves_it_as_it_was() {
         },
         ..LearningConfig::default()
     };
-    let learning = Learning::new(config, learner::robot(), 1).unwrap();
+    let learning = Learning::new(config, learner::robot(&Tables::default()), 1).unwrap();
     let sound = learning.save();
     let learning = std::cell::RefCell::new(learning);
     always(200, &blows(), |blows| {

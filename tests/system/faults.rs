@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use protocol::{
-    Domain, Node, RolloutHeader, RolloutLayout, RolloutPublisher, RolloutViewMut, SendOutcome,
-    Shutdown, WeightsHeader, WeightsOrder, WeightsPublisher, WeightsSubscriber,
+    Domain, Lists, Node, RolloutHeader, RolloutLayout, RolloutPublisher, RolloutViewMut,
+    SendOutcome, Shutdown, WeightsHeader, WeightsOrder, WeightsPublisher, WeightsSubscriber,
 };
 use serde_json::Value;
 
@@ -14,10 +14,13 @@ use crate::harness::{Alone, metrics, own_memory, until, until_iteration};
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// The smoke preset's rollouts for two actors: 16 / 2 robots, 8 steps.
-const LAYOUT: RolloutLayout = RolloutLayout {
-    environments: 8,
-    steps: 8,
-};
+fn layout() -> RolloutLayout {
+    RolloutLayout {
+        environments: 8,
+        steps: 8,
+        lists: Lists::default(),
+    }
+}
 
 /// An actor whose rollouts are what the test says.
 struct ActorsPart {
@@ -32,7 +35,7 @@ impl ActorsPart {
         let node = Node::join(&domain, &role, &Shutdown::manual()).expect("joined");
         Self {
             weights: WeightsSubscriber::new(&node).expect("opened"),
-            rollouts: RolloutPublisher::new(&node, index, LAYOUT, PATIENCE).expect("opened"),
+            rollouts: RolloutPublisher::new(&node, index, layout(), PATIENCE).expect("opened"),
         }
     }
 
@@ -116,9 +119,10 @@ fn refused(header: WeightsHeader, flat: &[f32]) -> String {
 
 #[test]
 fn weights_that_are_none_are_refused_by_the_actor() {
-    let header =
-        |hidden: &[usize]| WeightsHeader::new(0, WeightsOrder::Collect, hidden, 5.0, LAYOUT, true);
-    let shape = policy::Shape::new(&[16, 16]);
+    let header = |hidden: &[usize]| {
+        WeightsHeader::new(0, WeightsOrder::Collect, hidden, 5.0, layout(), true)
+    };
+    let shape = policy::Shape::new(layout().lists.widths.observation, &[16, 16]);
     let mut flat = vec![0.5; shape.len()];
     flat[900] = f32::NAN;
     let said = refused(header(&[16, 16]), &flat);

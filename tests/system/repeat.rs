@@ -87,17 +87,40 @@ const PATIENT: [&str; 4] = [
     "run.deadlines.rollout_seconds=60",
 ];
 
+/// A task that grows through all 8 iterations of 128 samples: its clock goes on where it stopped.
+const GROWING: &str = "task.reward.track.kernel={from=0.25,to=8,samples=[0,1024]}";
+
 #[test]
 fn stopping_and_resuming_changes_no_bit() {
-    let runs = Runs::new();
-    // A task that grows through all 8 iterations of 128 samples: its clock goes on where it stopped.
-    let growing = [
+    stop_and_resume(&["--set", GROWING]);
+}
+
+#[test]
+fn nor_does_it_with_past_frames_and_a_critic_that_sees_more() {
+    let metrics = stop_and_resume(&[
         "--set",
-        "task.reward.track.kernel={from=0.25,to=8,samples=[0,1024]}",
-    ];
+        "observation.actor.terms=['angular_velocity','gravity','command','joint_position','joint_velocity','previous_action']",
+        "--set",
+        "observation.actor.past=5",
+        "--set",
+        "observation.critic.terms=['actor','linear_velocity','height','friction','foot_forces']",
+        "--set",
+        "observation.discriminator.terms=['height','joint_angle','key_bodies']",
+    ]);
+    // Gait is measured whatever the lists are.
+    assert!(
+        metrics
+            .iter()
+            .all(|line| line["joint_speed_use"].is_number())
+    );
+}
+
+/// Runs 8 iterations at once and in two halves; gives the metrics, which are those of both.
+fn stop_and_resume(set: &[&str]) -> Vec<serde_json::Value> {
+    let runs = Runs::new();
     let train = |name: &str, iterations: &str| {
         let arguments = ["--actors", "2", "--iterations", iterations];
-        let arguments = [&arguments[..], &PATIENT[..], &growing[..]].concat();
+        let arguments = [&arguments[..], &PATIENT[..], set].concat();
         let mut group = runs.train(name, &arguments);
         assert!(group.end().success(), "{}", group.stderr.text());
     };
@@ -106,6 +129,7 @@ fn stopping_and_resuming_changes_no_bit() {
     let mut second = runs.resume("halves", &["--iterations", "8"]);
     assert!(second.end().success(), "{}", second.stderr.text());
     assert_same(&runs, "whole", "halves", 8);
+    metrics(&runs.run("whole"))
 }
 
 /// Kills a whole group in the middle, lets it go on from its last checkpoint, and compares it with one

@@ -37,7 +37,7 @@ impl Gaussian {
         &self.sigma
     }
 
-    /// Draws  aᵢ = μᵢ + σᵢ·zᵢ,  zᵢ standard normal, for rows of means `[n][23]`, with the log-density of each row in
+    /// Draws  aᵢ = μᵢ + σᵢ·zᵢ,  zᵢ standard normal, for rows of means `[n][joints]`, with the log-density of each row in
     /// `log_probs` `[n]`.
     pub(crate) fn sample<R: Rng + ?Sized>(
         &self,

@@ -6,8 +6,7 @@ use rand::Rng;
 use crate::gaussian::Gaussian;
 use crate::kernel::{Rows, TILE_ROWS};
 use crate::layer::{Activation, Layer};
-use crate::shape::{INVERSE_DEVIATION, MEAN, SIGMA};
-use crate::{INPUTS, OUTPUTS, PolicyError, Shape};
+use crate::{OUTPUTS, PolicyError, Shape};
 
 /// Rows that go through all layers together: their activations stay in the second-level cache.
 const BLOCK: usize = 16 * TILE_ROWS;
@@ -19,8 +18,8 @@ pub struct Policy {
     arch: Arch,
     shape: Shape,
     clip: f32,
-    mean: [f32; INPUTS],
-    inverse_deviation: [f32; INPUTS],
+    mean: Vec<f32>,
+    inverse_deviation: Vec<f32>,
     gaussian: Gaussian,
     layers: Vec<Layer>,
     /// Results of the layer before and of the layer at work, for `BLOCK` rows.
@@ -32,13 +31,12 @@ impl Policy {
     /// observations to ± `clip`, which belongs to its weights as their shape does: they were trained with it.
     ///
     /// # Panics
-    /// If a hidden layer has no units, or [`Self::check_clip`] refuses the clip.
+    /// If it sees nothing, a hidden layer has no units, or [`Self::check_clip`] refuses the clip.
     pub fn new(shape: Shape, clip: f32) -> Self {
         Self::check_clip(clip).expect("who takes a clip from elsewhere checks it");
         assert!(
-            !shape.hidden.contains(&0),
-            "a hidden layer without units passes nothing on: {:?}",
-            shape.hidden
+            shape.inputs > 0 && !shape.hidden.contains(&0),
+            "a layer without units passes nothing on: {shape:?}"
         );
         let layers: Vec<Layer> = shape
             .layers()
@@ -55,11 +53,11 @@ impl Policy {
         let widest = layers
             .iter()
             .map(Layer::padded_outputs)
-            .fold(INPUTS, usize::max);
+            .fold(shape.inputs, usize::max);
         Self {
             arch: Arch::new(),
-            mean: [0.0; INPUTS],
-            inverse_deviation: [1.0; INPUTS],
+            mean: vec![0.0; shape.inputs],
+            inverse_deviation: vec![1.0; shape.inputs],
             clip,
             gaussian: Gaussian::new([1.0; OUTPUTS]),
             layers,
@@ -109,16 +107,17 @@ impl Policy {
                 value: flat[index],
             });
         }
-        let sigma: [f32; OUTPUTS] = std::array::from_fn(|action| flat[SIGMA.start + action]);
+        let start = self.shape.sigma().start;
+        let sigma: [f32; OUTPUTS] = std::array::from_fn(|action| flat[start + action]);
         if let Some(action) = sigma.iter().position(|&sigma| sigma <= 0.0) {
             return Err(PolicyError::Deviation {
                 action,
                 value: sigma[action],
             });
         }
-        self.mean.copy_from_slice(&flat[MEAN]);
+        self.mean.copy_from_slice(&flat[self.shape.mean()]);
         self.inverse_deviation
-            .copy_from_slice(&flat[INVERSE_DEVIATION]);
+            .copy_from_slice(&flat[self.shape.inverse_deviation()]);
         self.gaussian = Gaussian::new(sigma);
         for (layer, place) in self.layers.iter_mut().zip(self.shape.layers()) {
             layer.load(&flat[place.weights], &flat[place.bias]);
@@ -126,24 +125,25 @@ impl Policy {
         Ok(())
     }
 
-    /// Mean actions `[n][23]` of observations `[n][82]`: what the policy does without exploring.
+    /// Mean actions `[n][joints]` of observations `[n][inputs]`: what the policy does without exploring.
     ///
     /// Does not allocate. A NaN in an observation makes that row's action NaN, and no other.
     ///
     /// # Panics
     /// If a slice does not hold exactly `n` rows.
     pub fn means(&mut self, observations: &[f32], n: usize, out: &mut [f32]) {
-        assert_eq!(observations.len(), n * INPUTS, "observations of {n} rows");
+        let inputs = self.shape.inputs;
+        assert_eq!(observations.len(), n * inputs, "observations of {n} rows");
         assert_eq!(out.len(), n * OUTPUTS, "actions of {n} rows");
         for (observations, out) in observations
-            .chunks(BLOCK * INPUTS)
+            .chunks(BLOCK * inputs)
             .zip(out.chunks_mut(BLOCK * OUTPUTS))
         {
             self.block(observations, out);
         }
     }
 
-    /// Draws actions around the means, with the log-density of each: all in `[n][23]`, `log_probs` in `[n]`.
+    /// Draws actions around the means, with the log-density of each: all in `[n][joints]`, `log_probs` in `[n]`.
     ///
     /// Does not allocate.
     ///
@@ -167,7 +167,8 @@ impl Policy {
 
     /// Up to `BLOCK` rows.
     fn block(&mut self, observations: &[f32], out: &mut [f32]) {
-        let count = observations.len() / INPUTS;
+        let inputs = self.shape.inputs;
+        let count = observations.len() / inputs;
         let [mut from, mut to] = self.buffers.each_mut();
         normalise(
             observations,
@@ -176,7 +177,7 @@ impl Policy {
             self.clip,
             from,
         );
-        let mut stride = INPUTS;
+        let mut stride = inputs;
         for layer in &self.layers {
             layer.forward(
                 self.arch,
@@ -196,20 +197,20 @@ impl Policy {
     }
 }
 
-/// clip((o − mean)·inverse deviation, ± `clip`) for rows `[n][82]`.
+/// clip((o − mean)·inverse deviation, ± `clip`) for rows `[n][inputs]`.
 fn normalise(
     observations: &[f32],
-    mean: &[f32; INPUTS],
-    inverse_deviation: &[f32; INPUTS],
+    mean: &[f32],
+    inverse_deviation: &[f32],
     clip: f32,
     out: &mut [f32],
 ) {
-    for (row, out) in observations
-        .chunks_exact(INPUTS)
-        .zip(out.chunks_exact_mut(INPUTS))
-    {
-        for i in 0..INPUTS {
-            out[i] = ((row[i] - mean[i]) * inverse_deviation[i]).clamp(-clip, clip);
+    let inputs = mean.len();
+    let rows = observations.chunks_exact(inputs);
+    for (row, out) in rows.zip(out.chunks_exact_mut(inputs)) {
+        let scaling = mean.iter().zip(inverse_deviation);
+        for ((out, x), (mean, inverse)) in out.iter_mut().zip(row).zip(scaling) {
+            *out = ((x - mean) * inverse).clamp(-clip, clip);
         }
     }
 }

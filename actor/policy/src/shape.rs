@@ -1,22 +1,21 @@
 //! The flat layout of a policy's weights, as the learner exports it and the processes ship it.
 //!
-//! One vector of f32, in this order: observation mean `[82]`, observation inverse standard deviation `[82]`, exploration
-//! standard deviation per action `[23]`, then for each layer its weights `[in][out]` row by row and its bias `[out]`. Beside
-//! it, as the widths of the layers, goes what normalised observations are cut to.
+//! One vector of f32, in this order: observation mean `[inputs]`, observation inverse standard deviation `[inputs]`,
+//! exploration standard deviation per action `[joints]`, then for each layer its weights `[in][out]` row by row and its bias
+//! `[out]`. Beside it, as the widths of the layers, goes what normalised observations are cut to.
 
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-/// Numbers in an observation (section III-A of the paper).
-pub const INPUTS: usize = 82;
-
 /// Numbers in an action, one target per joint.
-pub const OUTPUTS: usize = 23;
+pub const OUTPUTS: usize = g1::ACTION;
 
-/// Widths of the hidden layers; inputs and outputs are fixed.
+/// Widths of the layers; the last one's is [`OUTPUTS`].
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shape {
+    /// Numbers in an observation.
+    pub inputs: usize,
     /// Units of each hidden layer, from the observation on. Empty makes a linear policy.
     pub hidden: Vec<usize>,
 }
@@ -34,41 +33,48 @@ pub struct LayerPlace {
     pub bias: Range<usize>,
 }
 
-/// Observation means, in the flat vector.
-pub const MEAN: Range<usize> = 0..INPUTS;
-/// Observation inverse standard deviations, in the flat vector.
-pub const INVERSE_DEVIATION: Range<usize> = INPUTS..2 * INPUTS;
-/// Exploration standard deviations, in the flat vector.
-pub const SIGMA: Range<usize> = 2 * INPUTS..2 * INPUTS + OUTPUTS;
-
 impl Shape {
-    /// A policy with these hidden layers.
-    pub fn new(hidden: &[usize]) -> Self {
+    /// A policy that sees so many numbers, with these hidden layers.
+    pub fn new(inputs: usize, hidden: &[usize]) -> Self {
         Self {
+            inputs,
             hidden: hidden.to_vec(),
         }
+    }
+
+    /// Observation means, in the flat vector.
+    pub fn mean(&self) -> Range<usize> {
+        0..self.inputs
+    }
+
+    /// Observation inverse standard deviations, in the flat vector.
+    pub fn inverse_deviation(&self) -> Range<usize> {
+        self.inputs..2 * self.inputs
+    }
+
+    /// Exploration standard deviations, in the flat vector.
+    pub fn sigma(&self) -> Range<usize> {
+        2 * self.inputs..2 * self.inputs + OUTPUTS
     }
 
     /// Length of the flat vector.
     pub fn len(&self) -> usize {
         self.layers()
             .last()
-            .map_or(SIGMA.end, |layer| layer.bias.end)
+            .map_or(self.sigma().end, |layer| layer.bias.end)
     }
 
     /// Whether a flat vector of `numbers` numbers is one of this shape, however absurd the shape.
     pub fn fits(&self, numbers: usize) -> bool {
         // Every unit has a bias, so no layer of a vector is wider than the vector is long.
         let possible = |width: &usize| (1..=numbers).contains(width);
-        let widths: Vec<usize> = [INPUTS]
-            .into_iter()
-            .chain(self.hidden.iter().copied())
-            .chain([OUTPUTS])
-            .collect();
-        self.hidden.iter().all(possible)
+        // What is seen has a mean and a deviation each.
+        let before_last = [self.inputs].into_iter().chain(self.hidden.iter().copied());
+        let widths: Vec<usize> = before_last.chain([OUTPUTS]).collect();
+        widths.iter().all(possible)
             && widths
                 .windows(2)
-                .try_fold(SIGMA.end, |sum, pair| {
+                .try_fold(self.sigma().end, |sum, pair| {
                     sum.checked_add(pair[0].checked_mul(pair[1])?)?
                         .checked_add(pair[1])
                 })
@@ -83,18 +89,21 @@ impl Shape {
     /// Every layer's place, from the observation on.
     pub fn layers(&self) -> impl Iterator<Item = LayerPlace> + '_ {
         let outputs = self.hidden.iter().copied().chain([OUTPUTS]);
-        outputs.scan((SIGMA.end, INPUTS), |(start, inputs), outputs| {
-            let weights = *start..*start + *inputs * outputs;
-            let bias = weights.end..weights.end + outputs;
-            let place = LayerPlace {
-                inputs: *inputs,
-                outputs,
-                weights,
-                bias: bias.clone(),
-            };
-            (*start, *inputs) = (bias.end, outputs);
-            Some(place)
-        })
+        outputs.scan(
+            (self.sigma().end, self.inputs),
+            |(start, inputs), outputs| {
+                let weights = *start..*start + *inputs * outputs;
+                let bias = weights.end..weights.end + outputs;
+                let place = LayerPlace {
+                    inputs: *inputs,
+                    outputs,
+                    weights,
+                    bias: bias.clone(),
+                };
+                (*start, *inputs) = (bias.end, outputs);
+                Some(place)
+            },
+        )
     }
 }
 
@@ -105,24 +114,25 @@ mod tests {
     #[test]
     fn the_vector_is_the_sum_of_its_parts() {
         // 82 + 82 + 23 = 187; a linear policy adds 82·23 + 23 = 1909
-        assert_eq!(Shape::new(&[]).len(), 187 + 1909);
+        assert_eq!(Shape::new(82, &[]).len(), 187 + 1909);
         // 82·4 + 4 = 332, 4·23 + 23 = 115
-        assert_eq!(Shape::new(&[4]).len(), 187 + 332 + 115);
+        assert_eq!(Shape::new(82, &[4]).len(), 187 + 332 + 115);
     }
 
     #[test]
     fn a_shape_fits_its_own_length_and_no_other() {
-        let shape = Shape::new(&[4, 3]);
+        let shape = Shape::new(82, &[4, 3]);
         assert!(shape.fits(shape.len()) && !shape.fits(shape.len() + 1));
-        assert!(Shape::new(&[]).fits(187 + 1909));
+        assert!(Shape::new(82, &[]).fits(187 + 1909));
         let most = u32::MAX as usize;
-        assert!(!Shape::new(&[most; 6]).fits(2_000));
-        assert!(!Shape::new(&[0]).fits(187 + 23));
+        assert!(!Shape::new(82, &[most; 6]).fits(2_000));
+        assert!(!Shape::new(82, &[0]).fits(187 + 23));
+        assert!(!Shape::new(most, &[]).fits(2_000) && !Shape::new(0, &[]).fits(2 * 23));
     }
 
     #[test]
     fn layers_follow_each_other_without_gaps() {
-        let layers: Vec<_> = Shape::new(&[4, 3]).layers().collect();
+        let layers: Vec<_> = Shape::new(82, &[4, 3]).layers().collect();
         assert_eq!(
             layers
                 .iter()

@@ -10,12 +10,14 @@ use crate::feet::Footing;
 use crate::ground::Ground;
 use crate::moment::{self, Moment};
 use crate::physics::Bodies;
-use crate::randomization::Table;
+use crate::randomization::{SensorNoise, Table};
 use crate::start::{self, Pools, Starts};
 use crate::task::TaskConfig;
 use crate::termination::stray::Astray;
 use crate::terms::Sums;
-use g1::{JOINTS, OBSERVATION, RobotState, observation};
+use g1::{JOINTS, RobotState};
+use nalgebra::Vector3;
+use observation::{Scene, Tables, Truth};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
@@ -30,6 +32,8 @@ pub(crate) struct Setting {
     pub(crate) starts: Starts,
     /// The starts by kind of command.
     pub(crate) pools: Pools,
+    /// What is seen of a robot.
+    pub(crate) tables: Tables,
     /// Robots of the fleet.
     pub(crate) robots: usize,
     /// Hills and bumps, where the floor is not level.
@@ -55,6 +59,14 @@ impl Setting {
     }
 }
 
+/// What is seen of one environment: its rows, which hold what was seen before.
+pub(crate) struct Rows<'a> {
+    /// What the policy sees.
+    pub(crate) observation: &'a mut [f32],
+    /// What the critic sees of its own; empty where that is nothing.
+    pub(crate) critic: &'a mut [f32],
+}
+
 /// What a step of one environment brought.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Outcome {
@@ -75,6 +87,9 @@ pub(crate) struct Environment {
     state: RobotState,
     command: [f32; 3],
     previous_action: [f32; JOINTS],
+    truth: Truth,
+    /// The pushes of the coming step together, world frame, m/s.
+    pushed: Vector3<f32>,
     astray: Astray,
     feet: Footing,
     /// Steps until a new command; none while the command is held from outside.
@@ -95,6 +110,8 @@ impl Environment {
             state: RobotState::standing(),
             command: [0.0; 3],
             previous_action: [0.0; JOINTS],
+            truth: Truth::NOMINAL,
+            pushed: Vector3::zeros(),
             astray: Astray::default(),
             feet: Footing::default(),
             command_in: None,
@@ -131,6 +148,13 @@ impl Environment {
         self.state = setting.told(bodies.begin(index, &variation, &state));
         self.command = start.command;
         self.previous_action = [0.0; JOINTS];
+        self.truth = Truth {
+            friction: variation.friction,
+            payload: variation.torso_mass,
+            com_offset: variation.torso_com,
+            ..Truth::NOMINAL
+        };
+        self.pushed = Vector3::zeros();
         self.astray = Astray::at_start(start.fits);
         self.feet = Footing::default();
         self.command_in = Some(setting.task.command.draw_interval(&mut self.random));
@@ -155,7 +179,7 @@ impl Environment {
         if count_down(&mut self.push_in) {
             let table = &setting.table(index).rows;
             if let Some(push) = table.draw_push(&mut self.random) {
-                bodies.push(index, push);
+                self.push(bodies, index, push);
                 if let Some(rule) = &setting.task.termination.stray {
                     self.astray.pushed(rule);
                 }
@@ -194,6 +218,8 @@ impl Environment {
         };
         let (energy, foot_forces) = bodies.work_and_forces(index);
         self.feet.step(foot_forces);
+        self.truth.foot_forces = foot_forces;
+        self.truth.push = std::mem::take(&mut self.pushed).into();
         let moment = Moment::new(&self.command, &self.state, energy, &self.feet);
         Outcome {
             task_reward: setting.task.pay_and_tell(&moment, sums),
@@ -224,10 +250,58 @@ impl Environment {
         }
     }
 
-    /// Writes what the policy sees now, with sensor noise where it is on (82 numbers).
-    pub(crate) fn observe(&mut self, table: &Table, out: &mut [f32; OBSERVATION]) {
-        observation::policy_observation(&self.state, &self.command, &self.previous_action, out);
-        table.noise.blur(out, &mut self.random);
+    /// Pushes the robot before its next step: a jump of its velocity, world frame, m/s.
+    pub(crate) fn push(&mut self, bodies: &mut Bodies, index: usize, change: Vector3<f32>) {
+        bodies.push(index, change);
+        self.pushed += change;
+    }
+
+    /// Writes what policy and critic see now, with sensor noise where it is on, before the past frames that their rows
+    /// hold. `frame` is room for one frame.
+    pub(crate) fn observe(
+        &mut self,
+        setting: &Setting,
+        table: &Table,
+        frame: &mut [f32],
+        rows: Rows<'_>,
+    ) {
+        let scene = Scene {
+            state: &self.state,
+            command: &self.command,
+            previous_action: &self.previous_action,
+            truth: &self.truth,
+        };
+        let first = self.steps == 0;
+        let mut see = |list: &observation::Table, noise: &SensorNoise, row: &mut [f32]| {
+            if list.is_of_the_present() {
+                list.measure(&scene, row);
+                noise.blur(row, &mut self.random);
+                list.adjust(row);
+            } else {
+                let frame = &mut frame[..list.frame_width()];
+                list.measure(&scene, frame);
+                noise.blur(frame, &mut self.random);
+                list.adjust(frame);
+                list.remember(frame, first, row);
+            }
+        };
+        see(&setting.tables.actor, &table.noise, rows.observation);
+        if let Some(critic) = &setting.tables.critic {
+            see(&critic.own, &table.critic_noise, rows.critic);
+        }
+    }
+
+    /// Writes what is measured beside: of the state that a step led to, under the command that it had.
+    pub(crate) fn measure(&self, setting: &Setting, row: &mut [f32]) {
+        setting.tables.measured.measure(
+            &Scene {
+                state: &self.state,
+                command: &self.command,
+                previous_action: &self.previous_action,
+                truth: &self.truth,
+            },
+            row,
+        );
     }
 
     /// Steps done in this episode.

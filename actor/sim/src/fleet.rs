@@ -9,7 +9,7 @@ mod saved;
 pub use out::StepOut;
 
 use crate::actuator::Gains;
-use crate::env::{Environment, Setting};
+use crate::env::{Environment, Rows, Setting};
 use crate::error::SimError;
 use crate::physics::{Bodies, Exertion, Physics};
 use crate::randomization::{RandomizationConfig, Table};
@@ -17,8 +17,9 @@ use crate::start::Pools;
 use crate::start::Starts;
 use crate::task::TaskConfig;
 use crate::terms::Sums;
-use g1::{ACTION, FEATURES, OBSERVATION, RobotState, observation};
+use g1::{ACTION, RobotState};
 use nalgebra::Vector3;
+use observation::{Scene, Tables};
 use vocabulary::{Cause, RUNNING, Section};
 
 /// Environments stepped together. Same seed, same bits: an environment's future depends on the
@@ -31,7 +32,11 @@ pub struct Fleet {
     /// Whether the action of this step could be used.
     acted: Vec<bool>,
     observations: Vec<f32>,
+    /// What the critic sees of its own.
+    critic: Vec<f32>,
     features: Vec<f32>,
+    /// Room for one frame of what is seen.
+    frame: Vec<f32>,
     /// What is remembered of each environment's last step; of no influence on the future, and in no snapshot.
     last: Vec<Last>,
     /// What the terms of the task came to since they were asked for; of no influence on the future either.
@@ -60,8 +65,15 @@ pub struct LastStep {
     pub exertion: Exertion,
 }
 
+/// What a fleet is of, whatever it does.
+struct Make {
+    physics: Physics,
+    gains: Gains,
+    tables: Tables,
+}
+
 impl Fleet {
-    /// Environments at the start of their first episodes.
+    /// Environments at the start of their first episodes, seen as in the paper.
     pub fn new(
         physics: Physics,
         task: &TaskConfig,
@@ -70,6 +82,7 @@ impl Fleet {
         environments: usize,
         seed: u64,
     ) -> Result<Self, SimError> {
+        let gains = Gains::of_the_robot();
         Self::with_gains(
             physics,
             task,
@@ -77,8 +90,26 @@ impl Fleet {
             starts,
             environments,
             seed,
-            Gains::of_the_robot(),
+            gains,
         )
+    }
+
+    /// The same, seen as lists say.
+    pub fn seen_by(
+        tables: &Tables,
+        physics: Physics,
+        task: &TaskConfig,
+        randomization: &RandomizationConfig,
+        starts: Starts,
+        environments: usize,
+        seed: u64,
+    ) -> Result<Self, SimError> {
+        let make = Make {
+            physics,
+            gains: Gains::of_the_robot(),
+            tables: tables.clone(),
+        };
+        Self::build(make, task, randomization, starts, environments, seed)
     }
 
     /// With motors of other gains than the robot's.
@@ -91,6 +122,27 @@ impl Fleet {
         seed: u64,
         gains: Gains,
     ) -> Result<Self, SimError> {
+        let make = Make {
+            physics,
+            gains,
+            tables: Tables::default(),
+        };
+        Self::build(make, task, randomization, starts, environments, seed)
+    }
+
+    fn build(
+        make: Make,
+        task: &TaskConfig,
+        randomization: &RandomizationConfig,
+        starts: Starts,
+        environments: usize,
+        seed: u64,
+    ) -> Result<Self, SimError> {
+        let Make {
+            physics,
+            gains,
+            tables,
+        } = make;
         task.validate()?;
         randomization.validate()?;
         starts.validate()?;
@@ -102,13 +154,18 @@ impl Fleet {
         )?;
         let setting = Setting {
             task: task.clone(),
-            table: Table::of(randomization.clone()),
-            plain: Table::of(RandomizationConfig::default()),
+            table: Table::of(randomization.clone(), &tables),
+            plain: Table::of(RandomizationConfig::default(), &tables.exact()),
             pools: Pools::of(&starts),
             starts,
+            tables,
             robots: environments,
             ground: task.ground.map(|ground| ground.lay(seed)),
         };
+        let widths = setting.tables.widths();
+        let own = setting.tables.critic.as_ref().map(|critic| &critic.own);
+        let frame = own.map_or(0, observation::Table::frame_width);
+        let frame = frame.max(setting.tables.actor.frame_width());
         let mut bodies = Bodies::new(physics, &gains, environments, setting.ground.as_ref());
         let mut fleet = Self {
             environments: (0..environments)
@@ -118,8 +175,10 @@ impl Fleet {
             physics,
             bodies,
             acted: vec![true; environments],
-            observations: vec![0.0; environments * OBSERVATION],
-            features: vec![0.0; environments * FEATURES],
+            observations: vec![0.0; environments * widths.observation],
+            critic: vec![0.0; environments * widths.critic],
+            features: vec![0.0; environments * widths.features],
+            frame: vec![0.0; frame],
             last: Vec::new(),
             sums: Sums::default(),
             faults: 0,
@@ -141,12 +200,22 @@ impl Fleet {
         self.environments.is_empty()
     }
 
-    /// o_t as the policy sees it, N·82, until the next step.
+    /// What is seen of the robots.
+    pub fn tables(&self) -> &Tables {
+        &self.setting.tables
+    }
+
+    /// o_t as the policy sees it, a row per environment, until the next step.
     pub fn observations(&self) -> &[f32] {
         &self.observations
     }
 
-    /// Features of the true state at t, N·53.
+    /// What the critic sees at t beside that, or instead; nothing where it sees what the policy does.
+    pub fn critic_observations(&self) -> &[f32] {
+        &self.critic
+    }
+
+    /// What the discriminator sees of the true state at t, a row per environment.
     pub fn features(&self) -> &[f32] {
         &self.features
     }
@@ -183,19 +252,31 @@ impl Fleet {
     /// Goes on with other ranges of Table I: noise and pushes from the next step, robots and floors from
     /// their next episode.
     pub fn set_randomization(&mut self, randomization: RandomizationConfig) {
-        self.setting.table = Table::of(randomization);
+        self.setting.table = Table::of(randomization, &self.setting.tables);
     }
 
     /// Holds a command for the rest of an environment's episode. Its observation shows it at once.
     pub fn hold_command(&mut self, environment: usize, command: [f32; 3]) {
         self.environments[environment].hold_command(command);
-        self.observations[environment * OBSERVATION..][observation::COMMAND]
-            .copy_from_slice(&command);
+        let first = self.environments[environment].steps() == 0;
+        let tables = &self.setting.tables;
+        let own = tables.critic.as_ref().map(|critic| &critic.own);
+        let rows = [
+            (Some(&tables.actor), &mut self.observations),
+            (own, &mut self.critic),
+        ];
+        for (table, rows) in rows {
+            if let Some(table) = table {
+                let row = &mut rows[environment * table.width()..][..table.width()];
+                table.replace("command", &command, first, row);
+            }
+        }
     }
 
     /// Pushes an environment's robot before its next step: a jump of its velocity, world frame, m/s.
     pub fn push(&mut self, environment: usize, change: [f32; 3]) {
-        self.bodies.push(environment, Vector3::from(change));
+        let change = Vector3::from(change);
+        self.environments[environment].push(&mut self.bodies, environment, change);
     }
 
     /// What an environment's last step led to, also where an episode ended with it.
@@ -257,7 +338,8 @@ impl Fleet {
     /// If a slice has another length than its field says.
     pub fn observe(&mut self, out: &mut StepOut<'_>) {
         let n = self.len();
-        out.check(n);
+        let widths = self.setting.tables.widths();
+        out.check(n, &widths);
         for i in 0..n {
             let environment = &mut self.environments[i];
             let outcome = if self.acted[i] {
@@ -279,27 +361,37 @@ impl Fleet {
             out.ends[i] = outcome.end.map_or(RUNNING, Cause::code);
             out.episode_steps[i] = environment.steps() as f32;
             out.foot_forces[2 * i..][..2].copy_from_slice(&outcome.foot_forces);
-            observation::features(
-                environment.state(),
-                &mut out.next_features[i * FEATURES..][..FEATURES],
-            );
+            let next_features = &mut out.next_features[i * widths.features..][..widths.features];
+            judged(&self.setting.tables, environment.state(), next_features);
+            if widths.measured > 0 {
+                let measured = &mut out.measured[i * widths.measured..][..widths.measured];
+                environment.measure(&self.setting, measured);
+            }
+            let seen = &mut self.observations[i * widths.observation..][..widths.observation];
+            let critic = &mut self.critic[i * widths.critic..][..widths.critic];
+            let table = self.setting.table(i);
             if outcome.end == Some(Cause::TimeOut) {
                 // Seen before the reset: the value of a timed-out episode is that of its own end.
-                environment.observe(
-                    self.setting.table(i),
-                    &mut out.timeout_observations.as_chunks_mut().0[i],
-                );
+                let rows = Rows {
+                    observation: &mut out.timeout_observations[i * widths.observation..]
+                        [..widths.observation],
+                    critic: &mut out.timeout_critic[i * widths.critic..][..widths.critic],
+                };
+                rows.observation.copy_from_slice(seen);
+                rows.critic.copy_from_slice(critic);
+                environment.observe(&self.setting, table, &mut self.frame, rows);
             }
             environment.proceed(&self.setting, &mut self.bodies, i, outcome.end);
-            environment.observe(
-                self.setting.table(i),
-                &mut self.observations.as_chunks_mut().0[i],
-            );
-            let features = &mut self.features[i * FEATURES..][..FEATURES];
+            let rows = Rows {
+                observation: seen,
+                critic,
+            };
+            environment.observe(&self.setting, table, &mut self.frame, rows);
+            let features = &mut self.features[i * widths.features..][..widths.features];
             if outcome.end.is_none() {
-                features.copy_from_slice(&out.next_features[i * FEATURES..][..FEATURES]);
+                features.copy_from_slice(next_features);
             } else {
-                observation::features(environment.state(), features);
+                judged(&self.setting.tables, environment.state(), features);
             }
         }
     }
@@ -316,15 +408,22 @@ impl Fleet {
     /// Writes what is seen of an environment now.
     fn look(&mut self, i: usize) {
         let environment = &mut self.environments[i];
-        environment.observe(
-            self.setting.table(i),
-            &mut self.observations.as_chunks_mut().0[i],
-        );
-        observation::features(
-            environment.state(),
-            &mut self.features[i * FEATURES..][..FEATURES],
-        );
+        let widths = self.setting.tables.widths();
+        let rows = Rows {
+            observation: &mut self.observations[i * widths.observation..][..widths.observation],
+            critic: &mut self.critic[i * widths.critic..][..widths.critic],
+        };
+        let table = self.setting.table(i);
+        environment.observe(&self.setting, table, &mut self.frame, rows);
+        let features = &mut self.features[i * widths.features..][..widths.features];
+        judged(&self.setting.tables, environment.state(), features);
     }
+}
+
+/// Writes what the discriminator sees of a state.
+fn judged(tables: &Tables, state: &RobotState, row: &mut [f32]) {
+    tables.discriminator.measure(&Scene::of(state), row);
+    tables.discriminator.adjust(row);
 }
 
 #[cfg(test)]

@@ -9,7 +9,8 @@ mod noise;
 use crate::command;
 use crate::model::Variation;
 use nalgebra::Vector3;
-use noise::SensorNoise;
+pub(crate) use noise::SensorNoise;
+use observation::Tables;
 use rand::{Rng, RngExt};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -276,15 +277,20 @@ impl RandomizationConfig {
 /// Table I with what is laid out once for every step.
 pub(crate) struct Table {
     pub(crate) rows: RandomizationConfig,
-    /// Of the five rows that blur what the policy observes.
+    /// Of what the policy sees: the five rows that blur it, and what its list says.
     pub(crate) noise: SensorNoise,
+    /// Of what the critic sees beside: what its list says.
+    pub(crate) critic_noise: SensorNoise,
 }
 
 impl Table {
-    /// As the rows say.
-    pub(crate) fn of(rows: RandomizationConfig) -> Self {
+    /// As the rows and the lists say.
+    pub(crate) fn of(rows: RandomizationConfig, tables: &Tables) -> Self {
+        let critic = tables.critic.as_ref().map(|critic| &critic.own);
+        let exact = RandomizationConfig::none();
         Self {
-            noise: SensorNoise::of(&rows),
+            noise: SensorNoise::of(&rows, &tables.actor),
+            critic_noise: critic.map_or_else(SensorNoise::none, |own| SensorNoise::of(&exact, own)),
             rows,
         }
     }

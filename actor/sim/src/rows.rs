@@ -1,7 +1,7 @@
 //! Memory for one step of a fleet, for callers that have no shared memory to write into.
 
+use crate::fleet::Fleet;
 use crate::fleet::StepOut;
-use g1::{FEATURES, OBSERVATION};
 
 /// Owned rows behind a [`StepOut`]; the fields are explained there.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,12 +14,15 @@ pub struct StepRows {
     pub episode_steps: Vec<f32>,
     pub next_features: Vec<f32>,
     pub foot_forces: Vec<f32>,
+    pub measured: Vec<f32>,
     pub timeout_observations: Vec<f32>,
+    pub timeout_critic: Vec<f32>,
 }
 
 impl StepRows {
-    /// Rows for `n` environments, every number `value` until it is written.
-    pub fn filled(n: usize, value: f32) -> Self {
+    /// Rows for the environments of a fleet, every number `value` until it is written.
+    pub fn of(fleet: &Fleet, value: f32) -> Self {
+        let (n, widths) = (fleet.len(), fleet.tables().widths());
         let rows = |width: usize| vec![value; n * width];
         Self {
             task_rewards: rows(1),
@@ -27,9 +30,11 @@ impl StepRows {
             tracking_errors: rows(1),
             ends: rows(1),
             episode_steps: rows(1),
-            next_features: rows(FEATURES),
+            next_features: rows(widths.features),
             foot_forces: rows(2),
-            timeout_observations: rows(OBSERVATION),
+            measured: rows(widths.measured),
+            timeout_observations: rows(widths.observation),
+            timeout_critic: rows(widths.critic),
         }
     }
 
@@ -43,7 +48,9 @@ impl StepRows {
             episode_steps: &mut self.episode_steps,
             next_features: &mut self.next_features,
             foot_forces: &mut self.foot_forces,
+            measured: &mut self.measured,
             timeout_observations: &mut self.timeout_observations,
+            timeout_critic: &mut self.timeout_critic,
         }
     }
 }

@@ -43,7 +43,7 @@ fn every_episode_of_a_robot_begins_with_its_kind() {
         1,
     )
     .unwrap();
-    let mut rows = StepRows::filled(8, 0.0);
+    let mut rows = StepRows::of(&fleet, 0.0);
     let expected = [
         Kind::Standing,
         Kind::Standing,

@@ -102,7 +102,7 @@ fn both_see_the_same_at_the_start() {
 fn open_loop_joints_stay_together_for_a_fifth_of_a_second_in_the_air() {
     for (engine, flight) in flights() {
         let mut fleet = placed(engine, &flight);
-        let mut rows = StepRows::filled(1, 0.0);
+        let mut rows = StepRows::of(&fleet, 0.0);
         let steps = flight["steps"].as_array().unwrap();
         assert_eq!(steps.len(), 10, "0.2 s at 50 Hz");
         let (mut work, mut their_work) = (0.0, 0.0);

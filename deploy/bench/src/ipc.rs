@@ -11,8 +11,9 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, bail, ensure};
 use policy::{Policy, Shape};
 use protocol::{
-    Domain, Node, RolloutHeader, RolloutLayout, RolloutPublisher, RolloutSubscriber, SendOutcome,
-    Shutdown, Wake, Weights, WeightsHeader, WeightsOrder, WeightsPublisher, WeightsSubscriber,
+    Domain, Lists, Node, RolloutHeader, RolloutLayout, RolloutPublisher, RolloutSubscriber,
+    SendOutcome, Shutdown, Wake, Weights, WeightsHeader, WeightsOrder, WeightsPublisher,
+    WeightsSubscriber,
 };
 use serde_json::{Value, json};
 
@@ -25,10 +26,13 @@ const HIDDEN: [usize; 3] = [256, 128, 64];
 const CLIP: f32 = 5.0;
 
 /// 1·(1082·242 + 164) numbers of four bytes: a message of 1.05 million bytes.
-const MEBIBYTE: RolloutLayout = RolloutLayout {
-    environments: 1,
-    steps: 1082,
-};
+fn mebibyte() -> RolloutLayout {
+    RolloutLayout {
+        environments: 1,
+        steps: 1082,
+        lists: Lists::default(),
+    }
+}
 
 /// Measure latency and throughput of the messages between processes.
 #[derive(Debug, clap::Args)]
@@ -101,7 +105,7 @@ fn wake(wires: &Wires, count: usize) -> Result<Vec<Duration>> {
 
 /// From the learner's broadcast to the policy of a waiting actor having loaded the weights.
 fn adoption(wires: &Wires, count: usize) -> Result<Vec<Duration>> {
-    let shape = Shape::new(&HIDDEN);
+    let shape = Shape::new(mebibyte().lists.widths.observation, &HIDDEN);
     // The time does not depend on the values, which only have to be finite and σ positive.
     let flat = vec![0.01; shape.len()];
     let mut policy = Policy::new(shape, CLIP);
@@ -142,7 +146,7 @@ fn exchange(
                 WeightsOrder::Collect,
                 &HIDDEN,
                 CLIP,
-                MEBIBYTE,
+                mebibyte(),
                 true,
             );
             let sent = Instant::now();
@@ -175,8 +179,8 @@ fn next(subscriber: &WeightsSubscriber) -> Result<(Instant, Weights)> {
 /// 10⁹ bytes per second of messages that are written in place, sent, and read in place.
 fn throughput(wires: &Wires, count: usize) -> Result<f64> {
     let (actor, learner) = (wires.join("bench-actor")?, wires.join("bench-learner")?);
-    let subscriber = RolloutSubscriber::new(&learner)?;
-    let mut publisher = RolloutPublisher::new(&actor, 0, MEBIBYTE, DEADLINE)?;
+    let subscriber = RolloutSubscriber::new(&learner, Lists::default())?;
+    let mut publisher = RolloutPublisher::new(&actor, 0, mebibyte(), DEADLINE)?;
     // Connects, so that a full buffer holds the writer up from the first message on.
     ensure!(
         subscriber.receive()?.is_none(),
@@ -207,7 +211,7 @@ fn throughput(wires: &Wires, count: usize) -> Result<f64> {
             }
         }
         reader.join().expect("the reader does not panic")?;
-        let bytes = count * MEBIBYTE.len() * size_of::<f32>();
+        let bytes = count * mebibyte().len() * size_of::<f32>();
         Ok(bytes as f64 / start.elapsed().as_secs_f64() / 1e9)
     })
 }

@@ -6,13 +6,14 @@
 
 use std::time::Instant;
 
-use amp::OBSERVATION;
 use amp::discrimination::Discriminator;
 use amp::ppo::{Ppo, Rows};
-use amp::{ACTION, Batch, FeatureKind, JointGroup, Learning, LearningConfig, Mirror, Robot};
+use amp::{Batch, Learning, LearningConfig, Robot};
 use ampco::{Granularity, Rule};
 use anyhow::{Result, ensure};
 use clap::Args;
+use g1::{ACTION, OBSERVATION};
+use observation::Tables;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde_json::{Value, json};
@@ -106,7 +107,7 @@ impl LearnerBench {
         config.validate()?;
         let mut rng = Pcg64::seed_from_u64(1);
         let robot = robot();
-        let mut ppo = Ppo::new(&config, robot.action_mirror, &robot.joints, &mut rng);
+        let mut ppo = Ppo::new(&config, &robot, &mut rng);
         let column = |columns: usize, rng: &mut Pcg64| noise(ROWS * columns, rng);
         let observations = column(OBSERVATION, &mut rng);
         let actions = column(ACTION, &mut rng);
@@ -117,6 +118,8 @@ impl LearnerBench {
         let rows = Rows {
             observations: &observations,
             mirrored: &observations,
+            critic: &[],
+            mirrored_critic: &[],
             mirrored_share: config.ppo.mirrored_share.now(),
             kl_target: config.ppo.kl_target.now(),
             critic_alone: false,
@@ -140,8 +143,7 @@ impl LearnerBench {
         let mut rng = Pcg64::seed_from_u64(2);
         let robot = robot();
         let threads = config.ppo.threads;
-        let mut judge =
-            Discriminator::new(&config.discriminator, &robot.features, threads, &mut rng);
+        let mut judge = Discriminator::new(&config.discriminator, &robot, threads, &mut rng);
         let experts = noise(batch * judge.width(), &mut rng);
         let policy = noise(batch * judge.width(), &mut rng);
         self.median_ms(|| {
@@ -155,7 +157,7 @@ impl LearnerBench {
     /// Seconds of a whole iteration, and milliseconds of its parts.
     fn iteration(&self, config: LearningConfig) -> Result<(f64, Value)> {
         let mut rng = Pcg64::seed_from_u64(3);
-        let mut batch = Batch::default();
+        let mut batch = Batch::new(robot().widths());
         batch.resize(1, self.steps, self.environments);
         ensure!(
             batch.rows() > 0,
@@ -278,17 +280,7 @@ fn fill(batch: &mut Batch, sigma: &[f32], rng: &mut impl Rng) {
     }
 }
 
-/// A robot of the right dimensions; its reflection changes nothing, which costs as much.
+/// The robot as the paper sees it.
 fn robot() -> Robot {
-    let identity = |length: usize| Mirror {
-        index: (0..length).collect(),
-        sign: vec![1.0; length],
-    };
-    Robot {
-        observation_mirror: identity(OBSERVATION),
-        action_mirror: identity(ACTION),
-        command: g1::observation::COMMAND,
-        features: vec![FeatureKind::JointPosition; amp::FEATURES],
-        joints: vec![JointGroup::Leg; ACTION],
-    }
+    learner::robot(&Tables::default())
 }

@@ -9,6 +9,7 @@ use std::time::Instant;
 
 use amp::PolicyConfig;
 use anyhow::{Context, Result, ensure};
+use observation::Tables;
 use policy::{Policy, Shape};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -91,14 +92,12 @@ impl SimBench {
 
     /// Random small weights: a standing robot's actions stay near zero, as an untrained policy's.
     fn policy(&self) -> Result<Policy> {
-        let shape = Shape::new(&self.hidden);
+        let shape = Shape::new(Tables::default().actor.width(), &self.hidden);
         let mut flat = vec![0.0; shape.len()];
         let mut random = Pcg64Mcg::seed_from_u64(self.seed);
-        let (mean, deviation) = (policy::INPUTS, 2 * policy::INPUTS);
-        let sigma = deviation + policy::OUTPUTS;
-        flat[mean..deviation].fill(1.0);
-        flat[deviation..sigma].fill(EXPLORATION);
-        for weight in &mut flat[sigma..] {
+        flat[shape.inverse_deviation()].fill(1.0);
+        flat[shape.sigma()].fill(EXPLORATION);
+        for weight in &mut flat[shape.sigma().end..] {
             *weight = 0.05 * (2.0 * random.random::<f32>() - 1.0);
         }
         let mut policy = Policy::new(shape, PolicyConfig::default().observation_clip);
@@ -143,7 +142,7 @@ impl SimBench {
         )
         .context("building the fleet")?;
         let mut random = Pcg64Mcg::seed_from_u64(self.seed);
-        let mut rows = Rows::new(n, &mut random);
+        let mut rows = Rows::new(&fleet, &mut random);
         let mut measured = Measured::default();
         // Fresh robots stand; after half a second they do what random actions make them do.
         for warm in [true, false] {
@@ -198,14 +197,15 @@ struct Rows {
 }
 
 impl Rows {
-    fn new(n: usize, random: &mut Pcg64Mcg) -> Self {
+    fn new(fleet: &Fleet, random: &mut Pcg64Mcg) -> Self {
+        let n = fleet.len();
         let size = EXPLORATION * 3_f32.sqrt();
         let number = |_| size * (2.0 * random.random::<f32>() - 1.0);
         Self {
             actions: vec![0.0; n * g1::ACTION],
             means: vec![0.0; n * g1::ACTION],
             log_probs: vec![0.0; n],
-            outcome: StepRows::filled(n, 0.0),
+            outcome: StepRows::of(fleet, 0.0),
             drawn: (0..(n + DRAWN) * g1::ACTION).map(number).collect(),
             at: 0,
         }

@@ -103,6 +103,7 @@ fn files(kept: &Kept) -> Result<Vec<(&'static str, Vec<u8>)>> {
     let rate = |step: f32| f64::from((1.0 / step).round());
     let description = Description::new(
         &network,
+        &kept.tables.actor,
         origin,
         [rate(CONTROL_STEP), rate(PHYSICS_STEP)],
         serde_json::to_value(&kept.task()?)?,

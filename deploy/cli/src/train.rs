@@ -14,6 +14,7 @@ use judge::Kept;
 use motion::Dataset;
 use motion::dataset::Reference;
 use motion::quality::{Severity, line, severity};
+use observation::ObservationConfig;
 use protocol::RolloutLayout;
 use run::motion::Print;
 use run::{Config, Folder};
@@ -116,9 +117,22 @@ impl Train {
         if let Some(from) = &self.from {
             let kept = Kept::open(&self.place, from)?;
             let origin = format!("--from {from}");
-            let without_critic = ["learning.bin", "critic.bin"]
-                .iter()
-                .all(|part| kept.part(part).is_err());
+            let observation: ObservationConfig = config.section()?;
+            let tables = observation.tables().context("section [observation]")?;
+            let seen = observation::Print::of_actor(&kept.tables);
+            if let Some(difference) = seen.difference(&observation::Print::of_actor(&tables)) {
+                return Err(usage(format!(
+                    "--from {from}: this run's policy is to see something else than that one does: {difference}; set \
+                     observation.actor as it was, `{}` has it",
+                    kept.path.join("config.toml").display()
+                )));
+            }
+            let other_critic = observation::Print::of_critic(&kept.tables)
+                != observation::Print::of_critic(&tables);
+            let without_critic = other_critic
+                || ["learning.bin", "critic.bin"]
+                    .iter()
+                    .all(|part| kept.part(part).is_err());
             if without_critic && config.given("ppo.critic_first").is_none() {
                 config.put("ppo.critic_first", 1e6, &origin);
             }
@@ -226,10 +240,9 @@ fn check(config: &Config, resolved: &Resolved) -> Result<Vec<Print>> {
     let layout = RolloutLayout {
         environments: resolved.fleet.environments_per_actor(),
         steps: resolved.fleet.steps,
+        lists: (&resolved.tables).into(),
     };
-    let shape = policy::Shape {
-        hidden: resolved.policy.hidden.clone(),
-    };
+    let shape = policy::Shape::new(resolved.tables.actor.width(), &resolved.policy.hidden);
     let needed = protocol::reserved_bytes(resolved.fleet.actors, layout, shape.len());
     let free = free_shared_memory()?;
     if needed > free {

@@ -9,6 +9,7 @@ use amp::{DiscriminatorConfig, ExplorationConfig, PolicyConfig, PpoConfig};
 use ampco::ScheduleConfig;
 use anyhow::{Context, Result};
 use motion::MotionConfig;
+use observation::{ObservationConfig, Tables};
 use run::{Config, FleetConfig, RunConfig};
 use schemars::{Schema, SchemaGenerator};
 use sim::{RandomizationConfig, TaskConfig};
@@ -25,11 +26,12 @@ pub struct Known {
 }
 
 /// Every section there is.
-pub const SECTIONS: [Known; 10] = [
+pub const SECTIONS: [Known; 11] = [
     known::<RunConfig>(),
     known::<FleetConfig>(),
     known::<TaskConfig>(),
     known::<RandomizationConfig>(),
+    known::<ObservationConfig>(),
     known::<MotionConfig>(),
     known::<PolicyConfig>(),
     known::<ExplorationConfig>(),
@@ -59,6 +61,8 @@ pub struct Resolved {
     pub run: RunConfig,
     /// Section `fleet`, actors written out.
     pub fleet: FleetConfig,
+    /// Section `observation`, made ready.
+    pub tables: Tables,
     /// Section `motion`.
     pub motion: MotionConfig,
     /// Section `policy`.
@@ -73,9 +77,22 @@ pub fn resolve(config: &mut Config) -> Result<Resolved> {
         fleet.actors = cores().min(fleet.environments).min(protocol::MAX_ACTORS);
         config.resolve(&fleet);
     }
+    let observation: ObservationConfig = config.section()?;
+    let tables = observation.tables().expect("a section that was checked");
+    let discriminator: DiscriminatorConfig = config.section()?;
+    if discriminator.command_blur.is_some() && tables.velocities().is_none() {
+        return Err(config
+            .refuse(
+                "discriminator",
+                "command_blur needs the velocities that a command asks for: name linear_velocity and angular_velocity in \
+                 observation.discriminator.terms, without scale or clip, or leave command_blur out",
+            )
+            .into());
+    }
     Ok(Resolved {
         run: config.section()?,
         fleet,
+        tables,
         motion: config.section()?,
         policy: config.section()?,
     })
@@ -198,6 +215,13 @@ mod tests {
             ("run", "minutes = -1.0", "minutes"),
             ("fleet", "environments = 0", "environments"),
             ("task", "reward.track.kernel = -1.0", "reward.track.kernel"),
+            ("observation", "actor.terms = ['hight']", "actor.terms"),
+            ("observation", "actor.past = 99", "actor.past"),
+            (
+                "observation",
+                "discriminator.terms = ['push']",
+                "reference motion",
+            ),
             (
                 "randomization",
                 "friction = { range = [1.0, -1.0] }",
@@ -218,6 +242,20 @@ mod tests {
             let named = message.starts_with(&format!("my.toml: [{section}]"));
             assert!(named && message.contains(mentioned), "{message}");
         }
+    }
+
+    #[test]
+    fn a_discriminator_that_is_to_see_the_command_off_needs_velocities() {
+        let lists = "[observation.discriminator]\nterms = ['key_bodies']";
+        let said = complaint(&format!(
+            "{lists}\n[discriminator]\ncommand_blur = [0.1, 0.1, 0.1]"
+        ));
+        assert!(
+            said.starts_with("my.toml: [discriminator]") && said.contains("linear_velocity"),
+            "{said}"
+        );
+        let mut config = Config::parse(lists, "my.toml").unwrap();
+        resolve(&mut config).unwrap();
     }
 
     #[test]

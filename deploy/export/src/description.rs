@@ -5,7 +5,8 @@
 
 use std::collections::BTreeMap;
 
-use g1::{ACTION_SCALE, JOINT_TABLE, OBSERVATION, RobotState, observation};
+use g1::{ACTION_SCALE, JOINT_TABLE, RobotState};
+use observation::{Scene, Table};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -15,7 +16,7 @@ use crate::onnx;
 /// What `format` says.
 pub const FORMAT: &str = "ampco policy";
 /// What `version` says; a reader refuses a greater one.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// The whole file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,7 +31,7 @@ pub struct Description {
     pub network: NetworkDescription,
     /// From an action to torques, and how often.
     pub control: Control,
-    /// The joints, in the order of every vector of 23 numbers.
+    /// The joints, in the order of every vector of a number each.
     pub joints: Vec<JointDescription>,
     /// The terms of an observation, in order and without gaps.
     pub observation: Vec<Term>,
@@ -60,9 +61,9 @@ pub struct Origin {
 /// The network.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NetworkDescription {
-    /// Name of the ONNX input, `[batch, 82]`.
+    /// Name of the ONNX input, `[batch, inputs]`.
     pub input: String,
-    /// Name of the ONNX output, `[batch, 23]`.
+    /// Name of the ONNX output, `[batch, joints]`.
     pub output: String,
     /// Widths of the hidden layers, ELU after each.
     pub hidden: Vec<usize>,
@@ -110,7 +111,8 @@ pub struct JointDescription {
     pub armature: f64,
 }
 
-/// A stretch of the observation.
+/// A stretch of the observation: a quantity, cut to its clip and then multiplied by its scale, of the present first and
+/// then of `past` control steps before it, the newest of them first. At the start the first one stands for those before.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Term {
     /// What it is.
@@ -123,8 +125,17 @@ pub struct Term {
     pub unit: String,
     /// The frame that they are in.
     pub frame: String,
+    /// What each of its numbers is called; those of the past follow in the same order.
+    pub labels: Vec<String>,
     /// What a quantity in its unit is multiplied by before it is put into the observation.
     pub scale: f32,
+    /// Uniform noise, ± this, in its unit, that the policy was trained with besides Table I.
+    pub noise: f32,
+    /// It is cut to ± this, in its unit; it is not where there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clip: Option<f32>,
+    /// Control steps before the present one that are seen too.
+    pub past: usize,
     /// In words.
     pub meaning: String,
 }
@@ -139,9 +150,13 @@ pub struct Example {
 }
 
 impl Description {
-    /// Of a network; `rates` are those of the policy and of physics, Hz.
+    /// Of a network that sees what `seen` lists; `rates` are those of the policy and of physics, Hz.
+    ///
+    /// # Panics
+    /// If the network sees another number of numbers.
     pub fn new(
         network: &Network,
+        seen: &Table,
         origin: Origin,
         rates: [f64; 2],
         task: Value,
@@ -169,8 +184,8 @@ impl Description {
                 first_previous_action: 0.0,
             },
             joints: joints(),
-            observation: observation_terms(),
-            example: example(network),
+            observation: terms(seen),
+            example: example(network, seen),
             task,
             randomization,
         }
@@ -194,89 +209,37 @@ fn joints() -> Vec<JointDescription> {
         .collect()
 }
 
-fn observation_terms() -> Vec<Term> {
-    let height = observation::HEIGHT..observation::HEIGHT + 1;
-    let rows = [
-        (
-            "pelvis_height",
-            height,
-            "m",
-            "world",
-            "z of the pelvis link's origin above the ground",
-        ),
-        (
-            "linear_velocity",
-            observation::LINEAR_VELOCITY,
-            "m/s",
-            "base",
-            "velocity of the pelvis link's origin",
-        ),
-        (
-            "angular_velocity",
-            observation::ANGULAR_VELOCITY,
-            "rad/s",
-            "base",
-            "of the pelvis",
-        ),
-        (
-            "projected_gravity",
-            observation::GRAVITY,
-            "1",
-            "base",
-            "direction of gravity, unit length: (0, 0, -1) upright",
-        ),
-        (
-            "command",
-            observation::COMMAND,
-            "m/s, m/s, rad/s",
-            "heading",
-            "forward and leftward velocity, yaw rate that are asked for",
-        ),
-        (
-            "joint_position",
-            observation::JOINT_POSITION,
-            "rad",
-            "joint",
-            "less the default position",
-        ),
-        (
-            "joint_velocity",
-            observation::JOINT_VELOCITY,
-            "rad/s",
-            "joint",
-            "",
-        ),
-        (
-            "previous_action",
-            observation::PREVIOUS_ACTION,
-            "1",
-            "joint",
-            "the network's output one step before",
-        ),
-    ];
-    rows.map(|(name, numbers, unit, frame, meaning)| Term {
-        name: name.to_owned(),
+fn terms(seen: &Table) -> Vec<Term> {
+    let term = |(entry, numbers): (&observation::Entry, std::ops::Range<usize>)| Term {
+        name: entry.term.name.to_owned(),
         start: numbers.start,
         length: numbers.len(),
-        unit: unit.to_owned(),
-        frame: frame.to_owned(),
-        scale: 1.0,
-        meaning: meaning.to_owned(),
-    })
-    .into()
+        unit: entry.term.unit.to_owned(),
+        frame: entry.term.frame.to_owned(),
+        labels: entry
+            .term
+            .labels
+            .iter()
+            .map(|label| (*label).to_owned())
+            .collect(),
+        scale: entry.scale,
+        noise: entry.noise,
+        clip: entry.clip,
+        past: entry.past,
+        meaning: entry.term.meaning.to_owned(),
+    };
+    seen.in_row().map(term).collect()
 }
 
-fn example(network: &Network) -> Example {
-    let mut observation = [0.0; OBSERVATION];
-    observation::policy_observation(
-        &RobotState::standing(),
-        &[0.5, 0.0, 0.0],
-        &[0.0; g1::ACTION],
-        &mut observation,
-    );
+fn example(network: &Network, seen: &Table) -> Example {
+    let standing = RobotState::standing();
+    let observation = seen.row(&Scene {
+        command: &[0.5, 0.0, 0.0],
+        ..Scene::of(&standing)
+    });
     Example {
-        observation: observation.to_vec(),
         action: network.action(&observation).to_vec(),
+        observation,
     }
 }
 

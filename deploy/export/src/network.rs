@@ -1,8 +1,6 @@
 //! The weights that are exported, checked once.
 
-use policy::{
-    INPUTS, INVERSE_DEVIATION, LayerPlace, MEAN, OUTPUTS, Policy, PolicyError, SIGMA, Shape,
-};
+use policy::{LayerPlace, OUTPUTS, Policy, PolicyError, Shape};
 use sha2::{Digest, Sha256};
 
 /// A policy network as flat weights that fit its shape and are finite.
@@ -29,24 +27,29 @@ impl Network {
         self.clip
     }
 
+    /// Numbers in an observation.
+    pub fn inputs(&self) -> usize {
+        self.shape.inputs
+    }
+
     /// Widths of its hidden layers.
     pub fn hidden(&self) -> &[usize] {
         &self.shape.hidden
     }
 
-    /// Observation means `[82]`.
+    /// Observation means `[inputs]`.
     pub fn mean(&self) -> &[f32] {
-        &self.flat[MEAN]
+        &self.flat[self.shape.mean()]
     }
 
-    /// Observation inverse standard deviations `[82]`.
+    /// Observation inverse standard deviations `[inputs]`.
     pub fn inverse_deviation(&self) -> &[f32] {
-        &self.flat[INVERSE_DEVIATION]
+        &self.flat[self.shape.inverse_deviation()]
     }
 
-    /// Standard deviation of exploration per action `[23]`; a deployed policy does not explore.
+    /// Standard deviation of exploration per action `[joints]`; a deployed policy does not explore.
     pub fn sigma(&self) -> &[f32] {
-        &self.flat[SIGMA]
+        &self.flat[self.shape.sigma()]
     }
 
     /// Every layer with its weights `[in][out]`, row by row, and its bias `[out]`.
@@ -61,7 +64,10 @@ impl Network {
     }
 
     /// The action of one observation, by this project's own inference.
-    pub fn action(&self, observation: &[f32; INPUTS]) -> [f32; OUTPUTS] {
+    ///
+    /// # Panics
+    /// If it has not [`Self::inputs`] numbers.
+    pub fn action(&self, observation: &[f32]) -> [f32; OUTPUTS] {
         let mut policy = Policy::new(self.shape.clone(), self.clip);
         policy.load(&self.flat).expect("checked when it was made");
         let mut action = [0.0; OUTPUTS];
@@ -97,7 +103,7 @@ mod tests {
 
     #[test]
     fn weights_that_the_policy_refuses_are_not_exported() {
-        let shape = Shape::new(&[4]);
+        let shape = Shape::new(82, &[4]);
         let error = Network::new(shape.clone(), 5.0, vec![1.0; 3]).unwrap_err();
         assert!(matches!(error, PolicyError::Length { found: 3, .. }));
         let mut flat = vec![1.0; shape.len()];

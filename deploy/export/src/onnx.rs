@@ -1,4 +1,4 @@
-//! The policy as an ONNX model: `observation` `[batch, 82]` in, `action` `[batch, 23]` out.
+//! The policy as an ONNX model: `observation` `[batch, inputs]` in, `action` `[batch, joints]` out.
 //!
 //! Separate because the graph is the policy's formula once more, in another language; a test runs it in another
 //! runtime and compares. Normalisation and clipping are inside, exploration is not: the action is the mean.
@@ -14,7 +14,7 @@ use message::{
     AttributeProto, Dimension, FLOAT, GraphProto, ModelProto, NodeProto, OperatorSetIdProto,
     StringStringEntryProto, TensorProto, TensorShapeProto, TensorType, TypeProto, ValueInfoProto,
 };
-use policy::{INPUTS, OUTPUTS};
+use policy::OUTPUTS;
 use prost::Message;
 
 /// Name of the model's input.
@@ -49,14 +49,15 @@ pub fn model(network: &Network, properties: &[(&str, &str)]) -> Vec<u8> {
 }
 
 fn graph(network: &Network) -> GraphProto {
+    let inputs = network.inputs();
     let mut graph = GraphProto {
         name: "policy".to_owned(),
-        input: vec![value(INPUT, INPUTS)],
+        input: vec![value(INPUT, inputs)],
         output: vec![value(OUTPUT, OUTPUTS)],
         ..GraphProto::default()
     };
-    graph.constant("mean", &[INPUTS], network.mean());
-    graph.constant("inverse_deviation", &[INPUTS], network.inverse_deviation());
+    graph.constant("mean", &[inputs], network.mean());
+    graph.constant("inverse_deviation", &[inputs], network.inverse_deviation());
     graph.constant("least", &[], &[-network.clip()]);
     graph.constant("greatest", &[], &[network.clip()]);
     graph.node("Sub", &[INPUT, "mean"], "centred");
@@ -133,12 +134,17 @@ mod tests {
 
     #[test]
     fn the_graph_is_the_formula_in_order() {
-        let shape = Shape::new(&[3]);
+        let shape = Shape::new(5, &[3]);
         let network = Network::new(shape.clone(), 2.5, vec![0.5; shape.len()]).unwrap();
         let bytes = model(&network, &[("run", "walk")]);
         let model = ModelProto::decode(bytes.as_slice()).unwrap();
         let graph = model.graph.unwrap();
         let operators: Vec<&str> = graph.node.iter().map(|n| n.op_type.as_str()).collect();
+        let shape = |value: &ValueInfoProto| {
+            let tensor = value.r#type.as_ref().unwrap().tensor_type.as_ref().unwrap();
+            tensor.shape.as_ref().unwrap().dim.clone()
+        };
+        assert_eq!(shape(&graph.input[0])[1], Dimension::of(5));
         assert_eq!(operators, ["Sub", "Mul", "Clip", "Gemm", "Elu", "Gemm"]);
         // Each node reads what the one before wrote.
         let mut before = INPUT.to_owned();

@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 
 use crate::network::Network;
-use policy::{INPUTS, OUTPUTS};
+use policy::OUTPUTS;
 use safetensors::SafeTensorError;
 use safetensors::tensor::{Dtype, TensorView};
 
@@ -20,10 +20,11 @@ pub fn file(network: &Network) -> Result<Vec<u8>, SafeTensorError> {
         let bytes = values.iter().flat_map(|x| x.to_le_bytes()).collect();
         tensors.push((name.to_owned(), shape.to_vec(), bytes));
     };
-    add("observation.mean", &[INPUTS], network.mean());
+    let inputs = network.inputs();
+    add("observation.mean", &[inputs], network.mean());
     add(
         "observation.inverse_deviation",
-        &[INPUTS],
+        &[inputs],
         network.inverse_deviation(),
     );
     add("observation.clip", &[1], &[network.clip()]);
@@ -64,7 +65,7 @@ mod tests {
 
     #[test]
     fn layers_are_transposed_and_nothing_is_lost() {
-        let shape = Shape::new(&[2]);
+        let shape = Shape::new(82, &[2]);
         let flat: Vec<f32> = (0..shape.len()).map(|i| 1.0 + i as f32).collect();
         let network = Network::new(shape, 2.5, flat.clone()).unwrap();
         let bytes = file(&network).unwrap();

@@ -1,7 +1,7 @@
 //! The exported ONNX model in another runtime, compared with this project's own inference.
 
 use export::{Network, onnx};
-use policy::{INPUTS, OUTPUTS, Policy, SIGMA, Shape};
+use policy::{OUTPUTS, Policy, Shape};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use rten::Model;
@@ -9,16 +9,16 @@ use rten_tensor::prelude::*;
 use rten_tensor::{NdTensor, Tensor};
 
 /// Weights of the size that training makes: means of order 1, deviations from 0.05 to 20, layers that keep variance.
-fn network(hidden: &[usize], random: &mut Pcg64) -> (Shape, Vec<f32>) {
-    let shape = Shape::new(hidden);
+fn network(inputs: usize, hidden: &[usize], random: &mut Pcg64) -> (Shape, Vec<f32>) {
+    let shape = Shape::new(inputs, hidden);
     let mut flat = vec![0.0; shape.len()];
-    for value in &mut flat[..INPUTS] {
+    for value in &mut flat[shape.mean()] {
         *value = random.random_range(-1.0..1.0);
     }
-    for value in &mut flat[INPUTS..SIGMA.start] {
+    for value in &mut flat[shape.inverse_deviation()] {
         *value = random.random_range(0.05..20.0);
     }
-    flat[SIGMA].fill(0.3);
+    flat[shape.sigma()].fill(0.3);
     for layer in shape.layers() {
         let width = (3.0 / layer.inputs as f32).sqrt();
         for value in &mut flat[layer.weights.start..layer.bias.end] {
@@ -31,12 +31,12 @@ fn network(hidden: &[usize], random: &mut Pcg64) -> (Shape, Vec<f32>) {
 #[test]
 fn another_runtime_gives_the_same_actions() {
     let mut random = Pcg64::seed_from_u64(7);
-    for (hidden, clip) in [
-        (&[][..], 5.0),
-        (&[256, 128], 0.75),
-        (&[512, 256, 128], 20.0),
+    for (inputs, hidden, clip) in [
+        (82, &[][..], 5.0),
+        (9, &[256, 128], 0.75),
+        (492, &[512, 256, 128], 20.0),
     ] {
-        let (shape, flat) = network(hidden, &mut random);
+        let (shape, flat) = network(inputs, hidden, &mut random);
         let mut ours = Policy::new(shape.clone(), clip);
         ours.load(&flat).unwrap();
         let model = onnx::model(
@@ -46,12 +46,12 @@ fn another_runtime_gives_the_same_actions() {
         let theirs = Model::load(model).unwrap();
         // Batches of different sizes go through the same file; large numbers reach the clipping.
         for rows in [1, 7, 992] {
-            let seen: Vec<f32> = (0..rows * INPUTS)
+            let seen: Vec<f32> = (0..rows * inputs)
                 .map(|_| random.random_range(-3.0..3.0))
                 .collect();
             let mut expected = vec![0.0; rows * OUTPUTS];
             ours.means(&seen, rows, &mut expected);
-            let input = NdTensor::from_data([rows, INPUTS], seen);
+            let input = NdTensor::from_data([rows, inputs], seen);
             let got: Tensor<f32> = theirs
                 .run_one(input.into(), None)
                 .unwrap()

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use g1::gait::{CONTACT_FORCE, Conduct};
 use g1::joints::{LEFT_LEG, RIGHT_LEG};
-use g1::{ACTION, FEATURES, JOINTS};
+use g1::{ACTION, FEATURES, JOINTS, RobotState, observation};
 use policy::Policy;
 use sim::{Fleet, LastStep, RandomizationConfig, Starts, StepRows, TimeOutConfig};
 use vocabulary::{Cause, Ramp};
@@ -75,7 +75,7 @@ impl<'a> Walker<'a> {
         let n = unit.episodes;
         let scenario = unit.scenario;
         let mut fleet = self.fleet(unit, conditions)?;
-        let mut block = Block::new(n);
+        let mut block = Block::new(&fleet);
         let mut robots = vec![Robot::default(); n];
         let mut tally = Tally {
             episodes: n,
@@ -100,7 +100,9 @@ impl<'a> Walker<'a> {
                     fleet.push(robot, [x, y, 0.0]);
                 }
             }
-            block.features.copy_from_slice(fleet.features());
+            for (robot, before) in block.before.iter_mut().enumerate() {
+                *before = *fleet.state(robot);
+            }
             self.policy
                 .means(fleet.observations(), n, &mut block.actions);
             fleet.step(&block.actions, &mut block.rows.out());
@@ -109,9 +111,9 @@ impl<'a> Walker<'a> {
                 .enumerate()
                 .filter(|(_, l)| l.ended.is_none())
             {
-                let (before, after) = block.transition(robot);
-                self.judge.take(robot, step == 0, [before, after], &command);
                 let last = &fleet.last_step(robot);
+                let states = [&block.before[robot], &last.state];
+                self.judge.take(robot, step == 0, states, &command);
                 let settled = step >= held.1 + SETTLING;
                 tally.add(&block, robot, command, last, life, settled);
                 if conditions.traced {
@@ -159,7 +161,13 @@ impl<'a> Walker<'a> {
         let randomization = RandomizationConfig::only(rows).context("Table I has no such row")?;
         // Robots of one unit differ by their index; units differ by their seed.
         let seed = conditions.seed.wrapping_add((unit.first as u64) << 32);
-        Ok(Fleet::new(
+        // Exact sensors where nothing is randomised.
+        let tables = match scenario.rows.is_empty() {
+            true => self.subject.kept.tables.exact(),
+            false => self.subject.kept.tables.clone(),
+        };
+        Ok(Fleet::seen_by(
+            &tables,
             self.subject.physics,
             &task,
             &randomization,
@@ -200,7 +208,8 @@ impl Tally {
         let LastStep { state, exertion } = last;
         let planar = state.velocity_in_heading();
         let velocity = [planar.x, planar.y, state.angular_velocity.z];
-        let (_, features) = block.transition(robot);
+        let features = &mut [0.0; FEATURES];
+        observation::features(state, features);
         let (forces, forces_before) = (exertion.foot_forces, life.forces);
         let error = f64::from(block.rows.tracking_errors[robot]);
         let errors: [f64; 3] =
@@ -238,23 +247,19 @@ fn sample(LastStep { state, exertion }: &LastStep) -> Sample {
 
 /// Memory of one step of all robots.
 struct Block {
-    features: Vec<f32>,
+    /// The states before it.
+    before: Vec<RobotState>,
     actions: Vec<f32>,
     rows: StepRows,
 }
 
 impl Block {
-    fn new(n: usize) -> Self {
+    fn new(fleet: &Fleet) -> Self {
+        let n = fleet.len();
         Self {
-            features: vec![0.0; n * FEATURES],
+            before: vec![RobotState::standing(); n],
             actions: vec![0.0; n * ACTION],
-            rows: StepRows::filled(n, 0.0),
+            rows: StepRows::of(fleet, 0.0),
         }
-    }
-
-    /// Features of a robot before and after the step.
-    fn transition(&self, robot: usize) -> (&[f32], &[f32]) {
-        let of = robot * FEATURES..(robot + 1) * FEATURES;
-        (&self.features[of.clone()], &self.rows.next_features[of])
     }
 }

@@ -2,7 +2,8 @@
 
 use amp::Learning;
 use anyhow::{Context, Result};
-use g1::FEATURES;
+use g1::RobotState;
+use observation::{Scene, Table};
 
 use super::subject::Kept;
 
@@ -23,8 +24,13 @@ pub struct Judge {
     spacing: usize,
     /// Whether a window ends with the command.
     sees_command: bool,
-    /// The last states of each robot but the newest, `[robot][(frames − 1)·spacing][53]`, oldest first.
+    /// What it sees of a state; its own list, whatever the policy's says.
+    table: Table,
+    /// The last states of each robot but the newest, as it sees them, `[robot][(frames − 1)·spacing][numbers]`, oldest
+    /// first.
     seen: Vec<f32>,
+    /// The newest state as it sees it; memory that is used again.
+    newest: Vec<f32>,
     /// How many of these are of the episode.
     known: Vec<usize>,
     waiting: Vec<f32>,
@@ -41,8 +47,8 @@ impl Judge {
         // Episodes are spread over threads already.
         config.ppo.threads = 1;
         // The seed is of weights that are replaced at once.
-        let mut learning =
-            Learning::new(config, learner::robot(), 0).context("setting up the networks")?;
+        let mut learning = Learning::new(config, learner::robot(&kept.tables), 0)
+            .context("setting up the networks")?;
         // A shipped policy brings its discriminator alone.
         let (name, loaded) = match kept.part(JUDGE) {
             Ok(bytes) => (JUDGE, learning.load_judge(bytes)),
@@ -54,7 +60,9 @@ impl Judge {
             frames,
             spacing,
             sees_command,
+            table: kept.tables.discriminator.clone(),
             seen: Vec::new(),
+            newest: Vec::new(),
             known: Vec::new(),
             waiting: Vec::new(),
             rewards: Vec::new(),
@@ -67,40 +75,44 @@ impl Judge {
         (JUDGE, self.learning.save_judge())
     }
 
-    /// Takes one step of one robot: the features (53) before and after it, and the command in force. What an episode has
-    /// not yet seen is as the oldest state of the window that it has, as in training.
+    /// Takes one step of one robot: the states before and after it, and the command in force. What an episode has not
+    /// yet seen is as the oldest state of the window that it has, as in training.
     pub(super) fn take(
         &mut self,
         robot: usize,
         first: bool,
-        [before, after]: [&[f32]; 2],
+        [before, after]: [&RobotState; 2],
         command: &[f32; 3],
     ) {
+        let features = self.table.width();
         let depth = (self.frames - 1) * self.spacing;
-        let size = depth * FEATURES;
+        let size = depth * features;
         if self.known.len() <= robot {
             self.known.resize(robot + 1, 0);
             self.seen.resize((robot + 1) * size, 0.0);
         }
         let seen = &mut self.seen[robot * size..][..size];
-        seen.copy_within(FEATURES.., 0);
-        seen[size - FEATURES..].copy_from_slice(before);
+        seen.copy_within(features.., 0);
+        look(&self.table, before, &mut seen[size - features..]);
+        let newest = &mut self.newest;
+        newest.resize(features, 0.0);
+        look(&self.table, after, newest);
         let known = if first { 1 } else { self.known[robot] + 1 }.min(depth);
         self.known[robot] = known;
         // States of the window before the newest that there are.
         let real = known / self.spacing;
         for back in (1..self.frames).rev() {
             let state = match back.min(real) {
-                0 => after,
-                there => &seen[size - there * self.spacing * FEATURES..][..FEATURES],
+                0 => newest,
+                there => &seen[size - there * self.spacing * features..][..features],
             };
             self.waiting.extend_from_slice(state);
         }
-        self.waiting.extend_from_slice(after);
+        self.waiting.extend_from_slice(newest);
         if self.sees_command {
             self.waiting.extend_from_slice(command);
         }
-        if self.waiting.len() >= TOGETHER * self.frames * FEATURES {
+        if self.waiting.len() >= TOGETHER * self.frames * features {
             self.score();
         }
     }
@@ -121,4 +133,10 @@ impl Judge {
         self.waiting.clear();
         self.sum += self.rewards.iter().copied().map(f64::from).sum::<f64>();
     }
+}
+
+/// Writes what is seen of a state.
+fn look(table: &Table, state: &RobotState, out: &mut [f32]) {
+    table.measure(&Scene::of(state), out);
+    table.adjust(out);
 }

@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use amp::{Learning, LearningConfig};
 use anyhow::{Context, Result};
 use motion::MotionConfig;
+use observation::{ObservationConfig, Tables};
 use policy::{Policy, Shape};
 use run::motion::Learned;
 use run::{Checkpoint, Config, FleetConfig};
@@ -25,6 +26,8 @@ pub struct Kept {
     pub iteration: u64,
     /// The networks and how they learn.
     pub learning: LearningConfig,
+    /// What is seen of the robots; of a policy that does not say, the paper's lists.
+    pub tables: Tables,
     config: Config,
     checkpoint: Checkpoint,
 }
@@ -66,7 +69,11 @@ impl Kept {
         };
         let checkpoint = Checkpoint::open(&path)?;
         let config = config_of(&checkpoint, &path)?;
+        let observation: ObservationConfig = config.section()?;
         Ok(Self {
+            tables: observation
+                .tables()
+                .with_context(|| format!("section [observation] of {}", path.display()))?,
             iteration: checkpoint.iteration,
             learning: LearningConfig {
                 policy: config.section()?,
@@ -96,7 +103,8 @@ impl Kept {
             .iter()
             .map(|number| f32::from_le_bytes(*number))
             .collect();
-        Ok((Shape::new(&self.learning.policy.hidden), flat))
+        let inputs = self.tables.actor.width();
+        Ok((Shape::new(inputs, &self.learning.policy.hidden), flat))
     }
 
     /// The task that it was trained for, as its ramps had it when this checkpoint was written.
@@ -114,8 +122,9 @@ impl Kept {
     fn samples(&self) -> Result<f64> {
         if let Ok(bytes) = self.part("learning.bin") {
             // The seed is of weights that are replaced at once.
-            let mut learning = Learning::new(self.learning.clone(), learner::robot(), 0)
-                .context("setting up the networks")?;
+            let mut learning =
+                Learning::new(self.learning.clone(), learner::robot(&self.tables), 0)
+                    .context("setting up the networks")?;
             learning
                 .load(bytes)
                 .with_context(|| format!("loading learning.bin of {}", self.path.display()))?;

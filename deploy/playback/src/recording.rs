@@ -44,7 +44,7 @@ pub struct Frame {
     pub foot_forces: Option<[f32; 2]>,
     /// Positive mechanical work of the step that led here, J; none in a clip.
     pub energy: Option<f32>,
-    /// What the policy saw here, 82 numbers; none in a clip.
+    /// What the policy saw here; none in a clip.
     pub observation: Option<Vec<f32>>,
     /// What it did then, 23 numbers; none in a clip and in the last frame.
     pub action: Option<Vec<f32>>,

@@ -3,7 +3,8 @@
 //! Rows are ordered rollout by rollout, within a rollout `[step][environment]`. The arrays are filled in place and
 //! reused, so that an iteration allocates nothing here.
 
-use crate::{ACTION, FEATURES, LearningError, OBSERVATION};
+use crate::LearningError;
+use crate::robot::Place;
 use vocabulary::Cause;
 
 /// One rollout's size.
@@ -22,12 +23,28 @@ impl Segment {
     }
 }
 
+/// Numbers of a row of each kind; they follow from what is seen of the robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Widths {
+    /// What the policy sees.
+    pub observation: usize,
+    /// All that the critic sees; 0 where it sees what the policy does.
+    pub critic: usize,
+    /// An action.
+    pub action: usize,
+    /// What the discriminator sees of one state.
+    pub features: usize,
+    /// What is measured beside.
+    pub measured: usize,
+}
+
 macro_rules! fields {
     ($($(#[$doc:meta])* $name:ident: $of:ident * $columns:expr;)*) => {
         /// Rollouts of one iteration.
         #[derive(Clone, Debug, Default, PartialEq)]
         pub struct Batch {
             segments: Vec<Segment>,
+            widths: Widths,
             $($(#[$doc])* pub $name: Vec<f32>,)*
         }
 
@@ -41,7 +58,8 @@ macro_rules! fields {
             fn fit(&mut self) {
                 let (rows, robots) = (self.rows(), self.robots());
                 $(let count = fields!(@count $of, rows, robots);
-                self.$name.resize(count * $columns, 0.0);)*
+                let columns: fn(&Widths) -> usize = $columns;
+                self.$name.resize(count * columns(&self.widths), 0.0);)*
             }
 
             /// One rollout's rows.
@@ -53,7 +71,9 @@ macro_rules! fields {
                 SegmentMut {
                     $($name: {
                         let part = fields!(@count $of, rows, robots);
-                        &mut self.$name[part.start * $columns..part.end * $columns]
+                        let columns: fn(&Widths) -> usize = $columns;
+                        let wide = columns(&self.widths);
+                        &mut self.$name[part.start * wide..part.end * wide]
                     },)*
                 }
             }
@@ -65,13 +85,16 @@ macro_rules! fields {
             pub fn remove_segment(&mut self, index: usize) {
                 let (rows, robots) = self.place(index);
                 $(let part = fields!(@count $of, rows, robots);
-                self.$name.drain(part.start * $columns..part.end * $columns);)*
+                let columns: fn(&Widths) -> usize = $columns;
+                let wide = columns(&self.widths);
+                self.$name.drain(part.start * wide..part.end * wide);)*
                 self.segments.remove(index);
             }
 
             fn check_lengths(&self) -> Result<(), LearningError> {
                 let (rows, robots) = (self.rows(), self.robots());
-                $(let expected = fields!(@count $of, rows, robots) * $columns;
+                $(let columns: fn(&Widths) -> usize = $columns;
+                let expected = fields!(@count $of, rows, robots) * columns(&self.widths);
                 if self.$name.len() != expected {
                     return Err(LearningError::BatchLength {
                         field: stringify!($name),
@@ -83,8 +106,9 @@ macro_rules! fields {
             }
 
             fn check_numbers(&self) -> Result<(), LearningError> {
-                $(if stringify!($name) != "timeout_observations" {
-                    check_finite(stringify!($name), &self.$name, $columns)?;
+                $(if !stringify!($name).starts_with("timeout_") {
+                    let columns: fn(&Widths) -> usize = $columns;
+                    check_finite(stringify!($name), &self.$name, columns(&self.widths))?;
                 })*
                 Ok(())
             }
@@ -95,38 +119,77 @@ macro_rules! fields {
 }
 
 fields! {
-    /// o_t as the policy saw it, `[row][82]`.
-    observations: row * OBSERVATION;
-    /// a_t, `[row][23]`.
-    actions: row * ACTION;
-    /// The policy's mean action, `[row][23]`.
-    means: row * ACTION;
+    /// o_t as the policy saw it, `[row][observation]`.
+    observations: row * |widths| widths.observation;
+    /// What the critic sees at t, `[row][critic]`; nothing where it sees what the policy does.
+    critic: row * |widths| widths.critic;
+    /// a_t, `[row][joint]`.
+    actions: row * |widths| widths.action;
+    /// The policy's mean action, `[row][joint]`.
+    means: row * |widths| widths.action;
     /// ln π(a_t | o_t), `[row]`.
-    log_probs: row * 1;
+    log_probs: row * |_| 1;
     /// rᴳ, `[row]`.
-    task_rewards: row * 1;
+    task_rewards: row * |_| 1;
     /// Positive mechanical work of the step, J, `[row]`.
-    energies: row * 1;
+    energies: row * |_| 1;
     /// Squared planar velocity error, m²/s², `[row]`.
-    tracking_errors: row * 1;
+    tracking_errors: row * |_| 1;
     /// [`vocabulary::RUNNING`], or why the episode ended ([`Cause::code`]), `[row]`.
-    ends: row * 1;
+    ends: row * |_| 1;
     /// Steps done in the episode, this one included, `[row]`.
-    episode_steps: row * 1;
-    /// What the discriminator sees of the state at t, `[row][53]`.
-    features: row * FEATURES;
-    /// The same at t+1; of a finished episode its own last, `[row][53]`.
-    next_features: row * FEATURES;
+    episode_steps: row * |_| 1;
+    /// What the discriminator sees of the state at t, `[row][features]`.
+    features: row * |widths| widths.features;
+    /// The same at t+1; of a finished episode its own last, `[row][features]`.
+    next_features: row * |widths| widths.features;
     /// Ground force under the left and right foot, N, `[row][2]`.
-    foot_forces: row * 2;
-    /// Observation after the rollout's last step, `[environment][82]`, rollout by rollout.
-    last_observations: robot * OBSERVATION;
-    /// Observation at which an episode was cut, `[environment][82]`; others hold anything. Of two time-outs of one
-    /// environment in one rollout, the later one's.
-    timeout_observations: robot * OBSERVATION;
+    foot_forces: row * |_| 2;
+    /// What is measured beside, of the state at t+1 and the command at t, `[row][measured]`.
+    measured: row * |widths| widths.measured;
+    /// Observation after the rollout's last step, `[environment][observation]`, rollout by rollout.
+    last_observations: robot * |widths| widths.observation;
+    /// Observation at which an episode was cut, `[environment][observation]`; others hold anything. Of two time-outs of
+    /// one environment in one rollout, the later one's.
+    timeout_observations: robot * |widths| widths.observation;
+    /// What the critic sees after the rollout's last step, `[environment][critic]`.
+    last_critic: robot * |widths| widths.critic;
+    /// What it saw when an episode was cut, `[environment][critic]`; others hold anything.
+    timeout_critic: robot * |widths| widths.critic;
 }
 
 impl Batch {
+    /// An empty batch of rows of these widths.
+    pub fn new(widths: Widths) -> Self {
+        Self {
+            widths,
+            ..Self::default()
+        }
+    }
+
+    /// Numbers of a row of each kind.
+    pub fn widths(&self) -> &Widths {
+        &self.widths
+    }
+
+    /// What a row holds at a place.
+    pub fn at(&self, row: usize, place: &Place) -> &[f32] {
+        match place {
+            Place::Observation(numbers) => {
+                let width = self.widths.observation;
+                &self.observations[row * width..][..width][numbers.clone()]
+            }
+            Place::Features(numbers) => {
+                let width = self.widths.features;
+                &self.next_features[row * width..][..width][numbers.clone()]
+            }
+            Place::Measured(numbers) => {
+                let width = self.widths.measured;
+                &self.measured[row * width..][..width][numbers.clone()]
+            }
+        }
+    }
+
     /// Makes place for `count` rollouts of one size; content is not kept in order.
     pub fn resize(&mut self, count: usize, steps: usize, environments: usize) {
         self.segments.clear();
@@ -187,20 +250,35 @@ impl Batch {
     }
 
     /// Refuses a batch that cannot be learnt from: empty, of wrong lengths, or with a number that is not finite.
-    pub(crate) fn check(&self) -> Result<(), LearningError> {
+    pub(crate) fn check(&self, widths: &Widths) -> Result<(), LearningError> {
+        if self.widths != *widths {
+            return Err(LearningError::BatchWidths {
+                expected: *widths,
+                found: self.widths,
+            });
+        }
         if self.rows() == 0 {
             return Err(LearningError::EmptyBatch);
         }
         self.check_lengths()?;
         self.check_numbers()?;
         for (_, robot) in self.time_outs() {
-            let observation = &self.timeout_observations[robot * OBSERVATION..][..OBSERVATION];
-            if let Some(i) = networks::first_not_finite(observation) {
-                return Err(LearningError::BatchNotFinite {
-                    field: "timeout_observations",
-                    row: robot,
-                    value: observation[i],
-                });
+            for (field, numbers, width) in [
+                (
+                    "timeout_observations",
+                    &self.timeout_observations,
+                    self.widths.observation,
+                ),
+                ("timeout_critic", &self.timeout_critic, self.widths.critic),
+            ] {
+                let seen = &numbers[robot * width..][..width];
+                if let Some(i) = networks::first_not_finite(seen) {
+                    return Err(LearningError::BatchNotFinite {
+                        field,
+                        row: robot,
+                        value: seen[i],
+                    });
+                }
             }
         }
         Ok(())

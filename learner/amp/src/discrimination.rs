@@ -6,9 +6,8 @@
 use crate::config::{DECAY, DiscriminatorConfig, FEATURE_CLIP, HEAD_DECAY, floor};
 use crate::error::Fault;
 use crate::inference::{self, CHUNK};
-use crate::losses;
-use crate::robot::FeatureKind;
-use crate::{COMMAND, FEATURES};
+use crate::robot::Robot;
+use crate::{COMMAND, losses};
 use networks::{
     Activation, Adam, AdamConfig, Decay, Mlp, Normalizer, Shape, orthogonal, shards, tensor,
     tracked_device, values,
@@ -42,7 +41,9 @@ pub struct Discriminator {
     weights: Vec<f32>,
     adam: Adam,
     normalizer: Normalizer,
-    /// Which features a command is about.
+    /// Numbers of a state.
+    features: usize,
+    /// Which features a command is about; 0 where none are and none are asked for.
     velocities: [usize; COMMAND],
 }
 
@@ -70,11 +71,16 @@ impl Discriminator {
     /// First weights: orthogonal with gain √2 in hidden layers, 1 in the last.
     pub fn new(
         config: &DiscriminatorConfig,
-        features: &[FeatureKind],
+        robot: &Robot,
         threads: usize,
         rng: &mut (impl Rng + ?Sized),
     ) -> Self {
-        let shape = Shape::new(config.width(), &config.hidden, 1, Activation::Relu);
+        let shape = Shape::new(
+            config.width(robot.features.len()),
+            &config.hidden,
+            1,
+            Activation::Relu,
+        );
         let weights = orthogonal(&shape, std::f32::consts::SQRT_2, 1.0, rng);
         let decay = vec![
             Decay {
@@ -86,7 +92,7 @@ impl Discriminator {
                 factor: HEAD_DECAY,
             },
         ];
-        let floors = features.iter().map(|kind| floor(*kind)).collect();
+        let floors = robot.features.iter().map(floor).collect();
         Self {
             adam: Adam::new(shape.len(), AdamConfig::default(), decay),
             normalizer: Normalizer::new(floors, FEATURE_CLIP),
@@ -94,11 +100,12 @@ impl Discriminator {
             threads,
             shape,
             weights,
-            velocities: view::velocities(features),
+            features: robot.features.len(),
+            velocities: robot.velocities.unwrap_or_default(),
         }
     }
 
-    /// Numbers of a window: `[frames][53]`, then the command if it sees that.
+    /// Numbers of a window: `[frames][features]`, then the command if it sees that.
     pub fn width(&self) -> usize {
         self.shape.inputs
     }
@@ -121,7 +128,7 @@ impl Discriminator {
 
     /// Takes windows `[row][width]`, not normalised, into the statistics: every state of each.
     pub fn observe(&mut self, transitions: &[f32]) {
-        let states = self.config.frames * FEATURES;
+        let states = self.config.frames * self.features;
         if states == self.width() {
             self.normalizer.update(transitions);
             return;

@@ -16,6 +16,14 @@ pub enum LearningError {
         /// Numbers found.
         found: usize,
     },
+    /// Rows of the batch are not as wide as what is seen of the robot.
+    #[error("rows of the batch have {found:?}, this learner's {expected:?}")]
+    BatchWidths {
+        /// Numbers needed.
+        expected: crate::Widths,
+        /// Numbers found.
+        found: crate::Widths,
+    },
     /// The batch holds NaN or infinity: nothing was learnt from it.
     #[error("field `{field}` of the batch, row {row}, holds {value}")]
     BatchNotFinite {

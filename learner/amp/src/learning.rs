@@ -11,7 +11,7 @@ use crate::replay::Replay;
 use crate::report::{IterationReport, Seconds, moments};
 use crate::robot::Robot;
 use crate::style::style_reward;
-use crate::{LearningError, OBSERVATION, blend, exploration};
+use crate::{LearningError, blend, exploration};
 use ampco::{Granularity, Rule};
 use networks::{Normalizer, snapshot};
 use rand::SeedableRng;
@@ -40,6 +40,8 @@ pub(crate) struct Core {
     pub(crate) ppo: Ppo,
     pub(crate) discriminator: Discriminator,
     pub(crate) observations: Normalizer,
+    /// Of what the critic sees; none where it sees what the policy does.
+    pub(crate) critic: Option<Normalizer>,
     pub(crate) generator: Pcg64,
     pub(crate) iteration: u64,
     pub(crate) samples: u64,
@@ -52,33 +54,36 @@ impl Learning {
     /// If a value of the configuration or a table of the robot cannot be used.
     pub fn new(config: LearningConfig, robot: Robot, seed: u64) -> Result<Self, LearningError> {
         config.validate()?;
-        robot.check()?;
+        robot.check(&config.discriminator)?;
         let mut generator = Pcg64::seed_from_u64(seed);
-        let ppo = Ppo::new(
-            &config,
-            robot.action_mirror.clone(),
-            &robot.joints,
-            &mut generator,
-        );
+        let ppo = Ppo::new(&config, &robot, &mut generator);
         let discriminator = Discriminator::new(
             &config.discriminator,
-            &robot.features,
+            &robot,
             config.ppo.threads,
             &mut generator,
         );
-        let floors = vec![OBSERVATION_FLOOR; OBSERVATION];
+        let normalizer = |width: usize| {
+            let floors = vec![OBSERVATION_FLOOR; width];
+            Normalizer::new(floors, config.policy.observation_clip)
+        };
+        let widths = robot.widths();
         Ok(Self {
             core: Core {
                 ppo,
                 discriminator,
-                observations: Normalizer::new(floors, config.policy.observation_clip),
+                observations: normalizer(widths.observation),
+                critic: robot
+                    .critic_mirror
+                    .as_ref()
+                    .map(|_| normalizer(widths.critic)),
                 generator,
                 iteration: 0,
                 samples: 0,
             },
             replay: Replay::new(
                 config.discriminator.replay_capacity,
-                config.discriminator.width(),
+                config.discriminator.width(widths.features),
             ),
             clock: || 0.0,
             config,
@@ -134,7 +139,7 @@ impl Learning {
         &self.flat
     }
 
-    /// rˢ (Eq. 7) of windows as of now, `[row][frames][53]` and the command if the discriminator sees that; appended to
+    /// rˢ (Eq. 7) of windows as of now, `[row][frames][features]` and the command if the discriminator sees that; appended to
     /// `rewards`.
     pub fn style_rewards(&mut self, windows: &[f32], rewards: &mut Vec<f32>) {
         let Scratch { scaled, scores, .. } = &mut self.scratch;
@@ -147,7 +152,7 @@ impl Learning {
 
     /// One iteration: score, blend, estimate advantages, improve the policy, train the discriminator.
     ///
-    /// `experts` fills its slice with windows of reference motion, `[n][frames][53]`, each with its command if the
+    /// `experts` fills its slice with windows of reference motion, `[n][frames][features]`, each with its command if the
     /// discriminator sees that; it is called once. Statistics of observations stay as the actors had them and take the
     /// batch in at the end, for the next policy.
     ///
@@ -161,7 +166,7 @@ impl Learning {
         granularity: Granularity,
     ) -> Result<IterationReport, LearningError> {
         let started = (self.clock)();
-        batch.check()?;
+        batch.check(&self.robot.widths())?;
         rule.validate()?;
         let good = self.core.clone();
         let result = self.attempt(batch, experts, rule, granularity, started);

@@ -47,19 +47,13 @@ pub mod style;
 pub mod surrogate;
 pub mod window;
 
-pub use batch::{Batch, Segment, SegmentMut};
+pub use batch::{Batch, Segment, SegmentMut, Widths};
 pub use config::{DiscriminatorConfig, ExplorationConfig, LearningConfig, PolicyConfig, PpoConfig};
 pub use error::LearningError;
 pub use learning::{Clock, Learning};
 pub use report::{IterationReport, Seconds};
-pub use robot::{FeatureKind, JointGroup, Mirror, Robot};
+pub use robot::{Feature, FeatureKind, JointGroup, Mirror, Place, Robot};
 pub use saturation::{Saturation, Scores};
 
-/// Numbers of a policy observation (III-A).
-pub const OBSERVATION: usize = 82;
-/// Numbers of an action, one per joint (III-A).
-pub const ACTION: usize = 23;
-/// Numbers that the discriminator sees of one state (III-A).
-pub const FEATURES: usize = 53;
 /// Numbers of a command: m/s forward, m/s aside, rad/s (III-A).
 pub const COMMAND: usize = 3;

@@ -21,7 +21,7 @@ pub fn policy_loss(scores: Tensor<2>, count: usize) -> Tensor<1> {
 
 /// L_GP = E over experts of ‖∇D(o_t, o_{t+1})‖²   (Eq. 5)
 ///
-/// `input_gradients` `[n, 106]`, with respect to what the discriminator sees, that is to normalised observations; a part
+/// `input_gradients` `[n, width]`, with respect to what the discriminator sees, that is to normalised observations; a part
 /// of `count` expert windows.
 pub fn gradient_penalty(input_gradients: Tensor<2>, count: usize) -> Tensor<1> {
     input_gradients.square().sum() / count as f32

@@ -13,8 +13,8 @@ use crate::config::{
 use crate::error::Fault;
 use crate::minibatch::{Order, split};
 use crate::report::moments;
-use crate::robot::{JointGroup, Mirror};
-use crate::{ACTION, OBSERVATION, exploration, surrogate};
+use crate::robot::{Mirror, Robot};
+use crate::{exploration, surrogate};
 use networks::{Activation, Adam, AdamConfig, NetworkError, Shape, orthogonal, values};
 use part::Minibatch;
 use rand::Rng;
@@ -23,19 +23,23 @@ use std::ops::Range;
 /// Rows of one iteration, all of the same count. Observations are normalised.
 #[derive(Clone, Copy, Debug)]
 pub struct Rows<'a> {
-    /// `[row][82]`
+    /// `[row][observation]`
     pub observations: &'a [f32],
-    /// The same rows mirrored, `[row][82]`; read if a share of rows is mirrored.
+    /// The same rows mirrored, `[row][observation]`; read if a share of rows is mirrored.
     pub mirrored: &'a [f32],
+    /// What the critic sees, `[row][critic]`; empty where that is what the policy sees.
+    pub critic: &'a [f32],
+    /// The same rows mirrored, `[row][critic]`; read if a share of rows is mirrored.
+    pub mirrored_critic: &'a [f32],
     /// Share of each minibatch that is taken from them.
     pub mirrored_share: f32,
     /// Mean KL divergence that the rate is steered to.
     pub kl_target: f32,
     /// Whether actor and ln σ stay as they are.
     pub critic_alone: bool,
-    /// `[row][23]`
+    /// `[row][joint]`
     pub actions: &'a [f32],
-    /// Mean actions of the policy that acted, `[row][23]`.
+    /// Mean actions of the policy that acted, `[row][joint]`.
     pub means: &'a [f32],
     /// Log-densities under it, `[row]`.
     pub log_probs: &'a [f32],
@@ -71,6 +75,8 @@ pub struct Ppo {
     actor: Shape,
     critic: Shape,
     mirror: Mirror,
+    /// Whether the critic sees rows of its own.
+    own_critic: bool,
     /// ln σ is within these; none if σ is not learned.
     log_sigma_limits: Option<Range<f32>>,
     /// Actor, critic, ln σ.
@@ -82,23 +88,28 @@ pub struct Ppo {
 
 impl Ppo {
     /// First weights: orthogonal with gain √2 in hidden layers, a small last gain for the actor, 1 for the critic.
-    pub fn new(
-        config: &LearningConfig,
-        mirror: Mirror,
-        joints: &[JointGroup],
-        rng: &mut (impl Rng + ?Sized),
-    ) -> Self {
+    pub fn new(config: &LearningConfig, robot: &Robot, rng: &mut (impl Rng + ?Sized)) -> Self {
         let hidden_gain = std::f32::consts::SQRT_2;
-        let actor = Shape::new(OBSERVATION, &config.policy.hidden, ACTION, Activation::Elu);
+        let widths = robot.widths();
+        let layers = &config.policy;
+        let actor = Shape::new(
+            widths.observation,
+            &layers.hidden,
+            widths.action,
+            Activation::Elu,
+        );
         let critic = Shape::new(
-            OBSERVATION,
-            &config.policy.critic_hidden,
+            robot.critic_width(),
+            &layers.critic_hidden,
             1,
             Activation::Elu,
         );
         let mut weights = orthogonal(&actor, hidden_gain, LAST_GAIN, rng);
         weights.extend(orthogonal(&critic, hidden_gain, 1.0, rng));
-        weights.extend(exploration::initial_log_sigma(&config.exploration, joints));
+        weights.extend(exploration::initial_log_sigma(
+            &config.exploration,
+            &robot.joints,
+        ));
         let limits = LEARNED_SIGMA[0].ln()..LEARNED_SIGMA[1].ln();
         Self {
             adam: Adam::new(weights.len(), AdamConfig::default(), vec![]),
@@ -109,7 +120,8 @@ impl Ppo {
             order: Order::default(),
             actor,
             critic,
-            mirror,
+            mirror: robot.action_mirror.clone(),
+            own_critic: robot.critic_mirror.is_some(),
             weights,
         }
     }
@@ -271,8 +283,8 @@ impl Ppo {
                 })
             })
             .collect();
-        let start = self.actor.len() + self.critic.len();
-        tensors.push(("log_sigma".to_owned(), vec![ACTION], start..start + ACTION));
+        let (start, joints) = (self.actor.len() + self.critic.len(), self.actor.outputs);
+        tensors.push(("log_sigma".to_owned(), vec![joints], start..start + joints));
         tensors
     }
 

@@ -11,7 +11,7 @@ pub struct Replay {
     width: usize,
     /// Where the next one goes.
     next: usize,
-    /// `[window][frames][53]`, as many as were inserted up to the capacity.
+    /// `[window][frames][features]`, as many as were inserted up to the capacity.
     rows: Vec<f32>,
 }
 

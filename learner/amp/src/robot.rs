@@ -2,7 +2,8 @@
 //!
 //! The robot's own crate is not imported: learning needs a reflection and two groupings, whatever walks.
 
-use crate::{ACTION, COMMAND, FEATURES, LearningError, OBSERVATION};
+use crate::batch::Widths;
+use crate::{COMMAND, DiscriminatorConfig, LearningError};
 use std::ops::Range;
 
 /// A reflection as a permutation with signs: `out[i] = sign[i] · in[index[i]]`.
@@ -14,16 +15,36 @@ pub struct Mirror {
     pub sign: Vec<f32>,
 }
 
+/// Where a batch's rows hold something.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Numbers of what the policy saw.
+    Observation(Range<usize>),
+    /// Numbers of what the discriminator sees of the state after the step.
+    Features(Range<usize>),
+    /// Numbers of what is measured beside.
+    Measured(Range<usize>),
+}
+
+/// A number of what the discriminator sees of a state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Feature {
+    /// What it measures.
+    pub kind: FeatureKind,
+    /// What a quantity in its unit was multiplied by.
+    pub scale: f32,
+}
+
 /// What a number of the discriminator's observation measures; each kind has its own least deviation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FeatureKind {
-    /// m
+    /// m: the pelvis' height, places of other bodies
     Height,
     /// m/s
     LinearVelocity,
     /// rad/s
     AngularVelocity,
-    /// rad
+    /// rad: joints, and where down is
     JointPosition,
     /// rad/s
     JointVelocity,
@@ -45,12 +66,18 @@ pub enum JointGroup {
 pub struct Robot {
     /// Left–right reflection of a policy observation.
     pub observation_mirror: Mirror,
-    /// Where an observation holds the command.
-    pub command: Range<usize>,
+    /// That of what the critic sees; none where it sees what the policy does.
+    pub critic_mirror: Option<Mirror>,
+    /// Where rows hold the command: m/s, m/s, rad/s.
+    pub command: Place,
     /// Left–right reflection of an action.
     pub action_mirror: Mirror,
-    /// Kind of each of the features.
-    pub features: Vec<FeatureKind>,
+    /// Each number that the discriminator sees of a state.
+    pub features: Vec<Feature>,
+    /// Which of them are the velocities that a command asks for, in its units; none where they are not among them.
+    pub velocities: Option<[usize; COMMAND]>,
+    /// Numbers that are measured beside.
+    pub measured: usize,
     /// Group of each of the actions' joints.
     pub joints: Vec<JointGroup>,
 }
@@ -75,23 +102,67 @@ impl Mirror {
 }
 
 impl Robot {
-    /// Refuses tables of other lengths, and mirrors that are no reflections.
-    pub(crate) fn check(&self) -> Result<(), LearningError> {
+    /// Numbers of a batch's rows.
+    pub fn widths(&self) -> Widths {
+        Widths {
+            observation: self.observation_mirror.index.len(),
+            critic: self
+                .critic_mirror
+                .as_ref()
+                .map_or(0, |mirror| mirror.index.len()),
+            action: self.joints.len(),
+            features: self.features.len(),
+            measured: self.measured,
+        }
+    }
+
+    /// Numbers that the critic sees.
+    pub(crate) fn critic_width(&self) -> usize {
+        let mirror = self
+            .critic_mirror
+            .as_ref()
+            .unwrap_or(&self.observation_mirror);
+        mirror.index.len()
+    }
+
+    /// Refuses tables that contradict each other or what the discriminator is to look at, and mirrors that are no
+    /// reflections.
+    pub(crate) fn check(&self, discriminator: &DiscriminatorConfig) -> Result<(), LearningError> {
         let refuse = |what: &str| Err(LearningError::Robot(what.to_owned()));
-        if !self.observation_mirror.is_reflection(OBSERVATION) {
-            return refuse("the mirror of observations is not a reflection of 82 numbers");
+        let widths = self.widths();
+        if !self.observation_mirror.is_reflection(widths.observation) {
+            return refuse("the mirror of observations is not a reflection");
         }
-        if !self.action_mirror.is_reflection(ACTION) {
-            return refuse("the mirror of actions is not a reflection of 23 numbers");
+        if self
+            .critic_mirror
+            .as_ref()
+            .is_some_and(|mirror| !mirror.is_reflection(widths.critic))
+        {
+            return refuse("the mirror of what the critic sees is not a reflection");
         }
-        if self.command.len() != COMMAND || self.command.end > OBSERVATION {
-            return refuse("the command must be 3 numbers of an observation");
+        if !self.action_mirror.is_reflection(widths.action) {
+            return refuse("the mirror of actions is not a reflection of a number for each joint");
         }
-        if self.features.len() != FEATURES {
-            return refuse("there must be a kind for each of 53 features");
+        let (numbers, end) = match &self.command {
+            Place::Observation(numbers) => (numbers, widths.observation),
+            Place::Features(numbers) => (numbers, widths.features),
+            Place::Measured(numbers) => (numbers, widths.measured),
+        };
+        if numbers.len() != COMMAND || numbers.end > end {
+            return refuse("the command must be 3 numbers of a row");
         }
-        if self.joints.len() != ACTION {
-            return refuse("there must be a group for each of 23 joints");
+        if self.features.is_empty()
+            || self
+                .velocities
+                .is_some_and(|places| places.iter().any(|place| *place >= widths.features))
+        {
+            return refuse("velocities must be among the features, of which there must be some");
+        }
+        if discriminator.command_blur.is_some() && self.velocities.is_none() {
+            return refuse(
+                "discriminator.command_blur needs the velocities among the features: name linear_velocity and \
+                 angular_velocity in observation.discriminator.terms, without scale or clip",
+            );
         }
         Ok(())
     }
@@ -100,6 +171,16 @@ impl Robot {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::config::floor;
+
+    /// Numbers of the rows of tests.
+    pub(crate) const OBSERVATION: usize = 82;
+    pub(crate) const ACTION: usize = 23;
+    pub(crate) const FEATURES: usize = 53;
+
+    pub(crate) fn feature(kind: FeatureKind) -> Feature {
+        Feature { kind, scale: 1.0 }
+    }
 
     /// A robot without sides: the first two joints swap, all else stays.
     pub(crate) fn simple() -> Robot {
@@ -115,9 +196,12 @@ pub(crate) mod tests {
         };
         Robot {
             observation_mirror: swap(OBSERVATION, 1.0),
-            command: 10..13,
+            critic_mirror: None,
+            command: Place::Observation(10..13),
             action_mirror: swap(ACTION, -1.0),
-            features: vec![FeatureKind::JointPosition; FEATURES],
+            features: vec![feature(FeatureKind::JointPosition); FEATURES],
+            velocities: None,
+            measured: 0,
             joints: (0..ACTION)
                 .map(|i| match i {
                     0..12 => JointGroup::Leg,
@@ -142,18 +226,45 @@ pub(crate) mod tests {
 
     #[test]
     fn tables_that_are_no_reflection_are_refused() {
-        assert_eq!(simple().check(), Ok(()));
+        let config = DiscriminatorConfig::default();
+        assert_eq!(simple().check(&config), Ok(()));
         let mut robot = simple();
         robot.observation_mirror.index[5] = 6; // 6 stays 6: not its own inverse
-        assert!(robot.check().is_err());
+        assert!(robot.check(&config).is_err());
         let mut robot = simple();
         robot.action_mirror.sign[0] = 1.0; // its partner has −1
-        assert!(robot.check().is_err());
+        assert!(robot.check(&config).is_err());
         let mut robot = simple();
-        robot.command = 80..83;
-        assert!(robot.check().is_err());
+        robot.command = Place::Observation(80..83);
+        assert!(robot.check(&config).is_err());
         let mut robot = simple();
-        robot.features.pop();
-        assert!(robot.check().is_err());
+        robot.features.clear();
+        assert!(robot.check(&config).is_err());
+    }
+
+    #[test]
+    fn the_command_can_be_seen_off_only_where_velocities_are() {
+        let config = DiscriminatorConfig {
+            command_blur: Some([0.1; COMMAND]),
+            ..DiscriminatorConfig::default()
+        };
+        let said = simple().check(&config).unwrap_err().to_string();
+        assert!(said.contains("observation.discriminator.terms"), "{said}");
+        let mut robot = simple();
+        robot.velocities = Some([1, 2, 6]);
+        assert_eq!(robot.check(&config), Ok(()));
+        robot.velocities = Some([1, 2, FEATURES]);
+        assert!(robot.check(&config).is_err());
+    }
+
+    #[test]
+    fn a_floor_is_in_what_its_feature_is_scaled_to() {
+        // 0.1 rad; a hundredth of 2 rad/s.
+        assert_eq!(floor(&feature(FeatureKind::JointPosition)), 0.1);
+        let scaled = Feature {
+            kind: FeatureKind::JointVelocity,
+            scale: 0.01,
+        };
+        assert!((floor(&scaled) - 0.02).abs() < 1e-9);
     }
 }

@@ -74,8 +74,15 @@ impl Learning {
             replay: self.replay.clone(),
             generator: core.generator.clone(),
         };
-        bincode::serde::encode_to_vec(&saved, bincode::config::standard())
-            .expect("plain numbers into memory")
+        let standard = bincode::config::standard();
+        let mut bytes =
+            bincode::serde::encode_to_vec(&saved, standard).expect("plain numbers into memory");
+        // Behind it, so that the state of a critic without rows of its own stays what it was.
+        if let Some(critic) = &core.critic {
+            let own = bincode::serde::encode_to_vec(critic.state(), standard);
+            bytes.extend(own.expect("plain numbers into memory"));
+        }
+        bytes
     }
 
     /// Continues from a saved state; the next iteration gives the same bits as it would have given then.
@@ -84,7 +91,7 @@ impl Learning {
     /// If the bytes are no saved state, or one of networks of other sizes. The learner is then as it was before.
     pub fn load(&mut self, bytes: &[u8]) -> Result<(), LearningError> {
         let refuse = |why: String| LearningError::Decode(why);
-        let saved = Saved::read(bytes)?;
+        let (saved, critic) = Saved::read(bytes)?;
         if !saved.replay.is_sound(self.replay.width()) {
             return Err(refuse(
                 "the remembered transitions contradict themselves".to_owned(),
@@ -92,6 +99,7 @@ impl Learning {
         }
         let mut core = self.core.clone();
         core.take_policy(saved.policy, saved.policy_adam, saved.rate)?;
+        core.take_critic(critic)?;
         let layout = core.discriminator.tensors();
         let (weights, adam, features) = core.discriminator.state_mut();
         restore(layout, saved.discriminator, weights)?;
@@ -108,8 +116,8 @@ impl Learning {
 }
 
 impl Saved<'_> {
-    /// Bytes of this format, to the last.
-    fn read(bytes: &[u8]) -> Result<Saved<'_>, LearningError> {
+    /// Bytes of this format, to the last; behind them the statistics of a critic with rows of its own.
+    fn read(bytes: &[u8]) -> Result<(Saved<'_>, Option<NormalizerState>), LearningError> {
         let refuse = |why: String| LearningError::Decode(why);
         let (saved, used): (Saved<'_>, usize) =
             bincode::serde::borrow_decode_from_slice(bytes, bincode::config::standard())
@@ -120,14 +128,42 @@ impl Saved<'_> {
                 saved.format
             )));
         }
-        if used != bytes.len() {
-            return Err(refuse(format!("{} bytes too many", bytes.len() - used)));
+        let rest = &bytes[used..];
+        if rest.is_empty() {
+            return Ok((saved, None));
         }
-        Ok(saved)
+        let (critic, used): (NormalizerState, usize) =
+            bincode::serde::decode_from_slice(rest, bincode::config::standard())
+                .map_err(|error| refuse(format!("{} bytes too many: {error}", rest.len())))?;
+        if used != rest.len() {
+            return Err(refuse(format!("{} bytes too many", rest.len() - used)));
+        }
+        Ok((saved, Some(critic)))
     }
 }
 
 impl Core {
+    /// Statistics of what the critic sees, where it sees rows of its own and nowhere else.
+    fn take_critic(&mut self, saved: Option<NormalizerState>) -> Result<(), LearningError> {
+        match (&mut self.critic, saved) {
+            (None, None) => Ok(()),
+            (Some(normalizer), Some(saved)) => Ok(normalizer.restore(saved)?),
+            (mine, _) => {
+                let said = |own: bool| {
+                    if own {
+                        "rows of its own"
+                    } else {
+                        "what the policy sees"
+                    }
+                };
+                let (here, there) = (said(mine.is_some()), said(mine.is_none()));
+                Err(LearningError::Decode(format!(
+                    "its critic sees {there}, that of the configuration {here}"
+                )))
+            }
+        }
+    }
+
     /// Actor, critic and widths with their optimizer and its rate.
     fn take_policy(
         &mut self,
@@ -154,9 +190,10 @@ impl Learning {
     /// # Errors
     /// As of [`Learning::load`]. The learner is then as it was before.
     pub fn load_policy(&mut self, bytes: &[u8]) -> Result<(), LearningError> {
-        let saved = Saved::read(bytes)?;
+        let (saved, critic) = Saved::read(bytes)?;
         let mut core = self.core.clone();
         core.take_policy(saved.policy, saved.policy_adam, saved.rate)?;
+        core.take_critic(critic)?;
         core.observations.restore(saved.observations)?;
         self.core = core;
         Ok(())

@@ -8,9 +8,7 @@
 
 use crate::batch::Batch;
 use crate::config::DiscriminatorConfig;
-use crate::robot::Robot;
-use crate::{FEATURES, OBSERVATION};
-use std::ops::Range;
+use crate::robot::{Place, Robot};
 
 /// What windows are cut to.
 #[derive(Clone, Debug)]
@@ -19,8 +17,10 @@ pub(crate) struct Cut {
     pub(crate) frames: usize,
     /// Control steps from one of them to the next.
     pub(crate) spacing: usize,
-    /// Where an observation holds the command, if that is seen too.
-    command: Option<Range<usize>>,
+    /// Numbers of a state.
+    pub(crate) features: usize,
+    /// Where rows hold the command, if that is seen too.
+    command: Option<Place>,
 }
 
 impl Cut {
@@ -29,6 +29,7 @@ impl Cut {
         Self {
             frames: config.frames,
             spacing: config.spacing,
+            features: robot.features.len(),
             command: config.command_blur.map(|_| robot.command.clone()),
         }
     }
@@ -41,7 +42,7 @@ impl Cut {
 
     /// Numbers of the states alone.
     pub(crate) fn states(&self) -> usize {
-        self.frames * FEATURES
+        self.frames * self.features
     }
 }
 
@@ -91,49 +92,49 @@ impl Past {
         })
     }
 
-    /// Appends a row's window: `[frames][53]`, oldest state first, then the command if that is seen.
+    /// Appends a row's window: `[frames][features]`, oldest state first, then the command if that is seen.
     pub(crate) fn write(&self, batch: &Batch, row: usize, cut: &Cut, out: &mut Vec<f32>) {
         let start = out.len();
         out.resize(start + cut.states(), 0.0);
         self.write_states(batch, row, cut, &mut out[start..]);
-        if let Some(command) = cut.command.clone() {
-            out.extend_from_slice(&batch.observations[row * OBSERVATION..][command]);
+        if let Some(command) = &cut.command {
+            out.extend_from_slice(batch.at(row, command));
         }
     }
 
     fn write_states(&self, batch: &Batch, row: usize, cut: &Cut, window: &mut [f32]) {
-        let newest = cut.frames - 1;
-        window[newest * FEATURES..]
-            .copy_from_slice(&batch.next_features[row * FEATURES..][..FEATURES]);
+        let (newest, wide) = (cut.frames - 1, cut.features);
+        window[newest * wide..].copy_from_slice(&batch.next_features[row * wide..][..wide]);
         let mut row = row;
         for real in 1..cut.frames {
             let Some(before) = self.back(row, cut.hops(real)) else {
-                repeat_oldest(window, real);
+                repeat_oldest(window, real, wide);
                 break;
             };
             row = before;
-            window[(newest - real) * FEATURES..][..FEATURES]
-                .copy_from_slice(&batch.features[row * FEATURES..][..FEATURES]);
+            window[(newest - real) * wide..][..wide]
+                .copy_from_slice(&batch.features[row * wide..][..wide]);
         }
     }
 }
 
-/// Lets the oldest of the last `real` states of a window stand for all before it.
-pub fn repeat_oldest(window: &mut [f32], real: usize) {
-    let first = window.len() - real * FEATURES;
+/// Lets the oldest of the last `real` states of a window, of so many `features` each, stand for all before it.
+pub(crate) fn repeat_oldest(window: &mut [f32], real: usize, features: usize) {
+    let first = window.len() - real * features;
     let (older, rest) = window.split_at_mut(first);
-    for state in older.chunks_exact_mut(FEATURES) {
-        state.copy_from_slice(&rest[..FEATURES]);
+    for state in older.chunks_exact_mut(features) {
+        state.copy_from_slice(&rest[..features]);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::robot::tests::{FEATURES, OBSERVATION, simple};
 
     /// One rollout of 4 steps by 2 robots; features of step t of robot r are 10·r + t. Robot 1 begins anew at step 2.
     fn batch() -> Batch {
-        let mut batch = Batch::default();
+        let mut batch = Batch::new(simple().widths());
         batch.resize(1, 4, 2);
         for row in 0..8 {
             let (step, robot) = (row / 2, row % 2);
@@ -162,12 +163,18 @@ mod tests {
         let cut = |command| Cut {
             frames,
             spacing,
+            features: FEATURES,
             command,
         };
         past.write(&batch, row, &cut(None), &mut out);
         assert_eq!(out.len(), frames * FEATURES);
         let mut with_command = vec![];
-        past.write(&batch, row, &cut(Some(10..13)), &mut with_command);
+        past.write(
+            &batch,
+            row,
+            &cut(Some(Place::Observation(10..13))),
+            &mut with_command,
+        );
         assert_eq!(with_command[..out.len()], out);
         assert_eq!(with_command[out.len()..], [row as f32, 0.5, 0.0]);
         out.chunks(FEATURES).map(|state| state[7]).collect()
@@ -198,6 +205,7 @@ mod tests {
             let cut = Cut {
                 frames,
                 spacing,
+                features: FEATURES,
                 command: None,
             };
             past.real(row, &cut)

@@ -71,13 +71,13 @@ fn sections(config: &Config) -> LearningConfig {
 }
 
 fn learning(config: &Config) -> Learning {
-    Learning::new(sections(config), robot(), 3).unwrap()
+    Learning::new(sections(config), robot(&Tables::default()), 3).unwrap()
 }
 
 /// One iteration on a rollout of 12 steps of 5 robots.
 fn iterate(learning: &mut Learning, seed: u64, width: usize) {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
-    let mut batch = Batch::default();
+    let mut batch = Batch::new(robot(&Tables::default()).widths());
     batch.resize(1, 12, 5);
     for part in [
         &mut batch.observations,
@@ -93,7 +93,7 @@ fn iterate(learning: &mut Learning, seed: u64, width: usize) {
     }
     // Near the density of the policy that acts, whose means are near 0.
     let sigma = learning.sigma();
-    let actions = batch.actions.chunks_exact(amp::ACTION);
+    let actions = batch.actions.chunks_exact(g1::ACTION);
     for (log_prob, action) in batch.log_probs.iter_mut().zip(actions) {
         let log = |(a, s): (&f32, &f32)| {
             -0.5 * (a / s).powi(2) - s.ln() - 0.5 * std::f32::consts::TAU.ln()
@@ -115,7 +115,7 @@ fn iterate(learning: &mut Learning, seed: u64, width: usize) {
 
 /// What an iteration after a resume leaves, of a state that was learned under `before` and goes on under `after`.
 fn resumed(before: &Config, after: &Config) -> (Vec<u8>, Vec<f32>) {
-    let width = sections(before).discriminator.width();
+    let width = sections(before).discriminator.width(g1::FEATURES);
     let mut first = learning(before);
     iterate(&mut first, 1, width);
     iterate(&mut first, 2, width);

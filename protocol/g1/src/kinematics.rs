@@ -3,7 +3,7 @@
 //! Separate because motion, gait measures and the simulation's tests all ask where the feet are.
 //! Generic over the number type, so tests can check the `f32` of the runtime against `f64`.
 
-use crate::links::{LEFT_FOOT, RIGHT_FOOT, SOLE_CORNERS, total_mass};
+use crate::links::{LEFT_FOOT, LEFT_HAND, RIGHT_FOOT, RIGHT_HAND, SOLE_CORNERS, TORSO, total_mass};
 use crate::{BODIES, JOINT_TABLE, JOINTS, LINK_TABLE, RobotState};
 use nalgebra::{
     Isometry3, Point3, RealField, SMatrix, Translation3, UnitQuaternion, Vector3, convert,
@@ -91,6 +91,23 @@ pub fn sole_points<T: RealField + Copy>(
     foot: usize,
 ) -> [Point3<T>; 4] {
     SOLE_CORNERS.map(|corner| bodies[foot] * Point3::from(vector(corner)))
+}
+
+/// Bodies and points within them by which a pose is told: left and right foot, left and right hand, head. The hands and
+/// the head are those of [`crate::shapes`].
+const KEY_POINTS: [(usize, [f64; 3]); 5] = [
+    (LEFT_FOOT, [0.0; 3]),
+    (RIGHT_FOOT, [0.0; 3]),
+    (LEFT_HAND, [0.17, 0.0, 0.0]),
+    (RIGHT_HAND, [0.17, 0.0, 0.0]),
+    (TORSO, [0.0, 0.0, 0.42]),
+];
+
+/// Where feet, hands and head are, seen from the pelvis and in its frame, m: left foot, right foot, left hand, right
+/// hand, head.
+pub fn key_points(joint_positions: &[f32; JOINTS]) -> [Point3<f32>; 5] {
+    let bodies = forward(&Isometry3::identity(), joint_positions);
+    KEY_POINTS.map(|(body, point)| bodies[body] * Point3::from(vector(point)))
 }
 
 /// Height of the lowest corner of one foot's sole, m.

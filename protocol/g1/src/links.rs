@@ -29,6 +29,10 @@ pub const LEFT_FOOT: usize = 6;
 pub const RIGHT_FOOT: usize = 12;
 /// Body index of the torso.
 pub const TORSO: usize = 13;
+/// Index of the left wrist and hand.
+pub const LEFT_HAND: usize = 18;
+/// Index of the right wrist and hand.
+pub const RIGHT_HAND: usize = 23;
 
 /// Half extents of the box that stands for a foot in contact, m.
 ///
@@ -130,6 +134,8 @@ mod tests {
         assert_eq!(LINK_TABLE[LEFT_FOOT].name, "left_ankle_roll_link");
         assert_eq!(LINK_TABLE[RIGHT_FOOT].name, "right_ankle_roll_link");
         assert_eq!(LINK_TABLE[TORSO].name, "torso_link");
+        assert_eq!(LINK_TABLE[LEFT_HAND].name, "left_wrist_roll_rubber_hand");
+        assert_eq!(LINK_TABLE[RIGHT_HAND].name, "right_wrist_roll_rubber_hand");
     }
 
     #[test]

@@ -1,14 +1,10 @@
-//! Left–right reflection of states, observations, actions and features.
+//! Left–right reflection of states, commands and actions.
 //!
 //! Separate because mirrored clips, mirrored minibatches and tests of symmetry need the same signs. The reflection is y → −y: sides swap, positions and velocities along y change
 //! sign, rotations about x and z change sign (an angular velocity is an axial vector).
 
 use crate::joints::{LEFT_ARM, RIGHT_ARM, RIGHT_LEG, WAIST};
-use crate::observation::{
-    COMMAND, FEATURE_JOINT_POSITION, FEATURE_JOINT_VELOCITY, GRAVITY, HEIGHT, JOINT_POSITION,
-    JOINT_VELOCITY, PREVIOUS_ACTION,
-};
-use crate::{ACTION, FEATURES, JOINT_TABLE, JOINTS, OBSERVATION, RobotState};
+use crate::{ACTION, JOINT_TABLE, JOINTS, RobotState};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// A reflection as a permutation with signs: `out[i] = sign[i] · in[index[i]]`.
@@ -44,31 +40,8 @@ impl<const N: usize> Mirror<N> {
             sign: [1.0; N],
         }
     }
-
-    const fn with_signs<const K: usize>(mut self, start: usize, sign: [f32; K]) -> Self {
-        let mut i = 0;
-        while i < K {
-            self.sign[start + i] = sign[i];
-            i += 1;
-        }
-        self
-    }
-
-    const fn with_joints(mut self, start: usize) -> Self {
-        let mut i = 0;
-        while i < JOINTS {
-            self.index[start + i] = start + ACTION_MIRROR.index[i];
-            self.sign[start + i] = ACTION_MIRROR.sign[i];
-            i += 1;
-        }
-        self
-    }
 }
 
-/// Signs of a vector of space (velocity, gravity): y turns round.
-const POLAR: [f32; 3] = [1.0, -1.0, 1.0];
-/// Signs of an axis of rotation: only rotation about y stays.
-const AXIAL: [f32; 3] = [-1.0, 1.0, -1.0];
 /// Signs of a command: forward stays, leftward and turning to the left change.
 const COMMAND_SIGNS: [f32; 3] = [1.0, -1.0, -1.0];
 
@@ -99,36 +72,9 @@ pub const ACTION_MIRROR: Mirror<ACTION> = {
     mirror
 };
 
-/// Reflection of a policy observation.
-pub const OBSERVATION_MIRROR: Mirror<OBSERVATION> = Mirror::identity()
-    .with_signs(HEIGHT + 1, POLAR)
-    .with_signs(HEIGHT + 4, AXIAL)
-    .with_signs(GRAVITY.start, POLAR)
-    .with_signs(COMMAND.start, COMMAND_SIGNS)
-    .with_joints(JOINT_POSITION.start)
-    .with_joints(JOINT_VELOCITY.start)
-    .with_joints(PREVIOUS_ACTION.start);
-
-/// Reflection of the features of one step.
-pub const FEATURES_MIRROR: Mirror<FEATURES> = Mirror::identity()
-    .with_signs(HEIGHT + 1, POLAR)
-    .with_signs(HEIGHT + 4, AXIAL)
-    .with_joints(FEATURE_JOINT_POSITION.start)
-    .with_joints(FEATURE_JOINT_VELOCITY.start);
-
-/// Reflects a policy observation (82 numbers).
-pub fn mirror_observation(input: &[f32], out: &mut [f32]) {
-    OBSERVATION_MIRROR.apply(input, out);
-}
-
 /// Reflects an action (23 numbers).
 pub fn mirror_action(input: &[f32], out: &mut [f32]) {
     ACTION_MIRROR.apply(input, out);
-}
-
-/// Reflects the features of one step (53 numbers).
-pub fn mirror_features(input: &[f32], out: &mut [f32]) {
-    FEATURES_MIRROR.apply(input, out);
 }
 
 /// Reflects a command.
@@ -157,7 +103,6 @@ fn polar(v: &Vector3<f32>) -> Vector3<f32> {
 mod tests {
     use super::*;
     use crate::kinematics::forward;
-    use crate::observation::{features, policy_observation};
     use crate::{DEFAULT_POSE, LINK_TABLE};
     use nalgebra::Isometry3;
 
@@ -175,10 +120,10 @@ mod tests {
     #[test]
     fn twice_is_the_identity() {
         assert_eq!(mirror_state(&mirror_state(&askew())), askew());
-        for i in 0..OBSERVATION {
-            let j = OBSERVATION_MIRROR.index[i];
-            assert_eq!(OBSERVATION_MIRROR.index[j], i);
-            assert_eq!(OBSERVATION_MIRROR.sign[j], OBSERVATION_MIRROR.sign[i]);
+        for i in 0..JOINTS {
+            let j = ACTION_MIRROR.index[i];
+            assert_eq!(ACTION_MIRROR.index[j], i);
+            assert_eq!(ACTION_MIRROR.sign[j], ACTION_MIRROR.sign[i]);
         }
         assert_eq!(mirror_command([1.0, 2.0, 3.0]), [1.0, -2.0, -3.0]);
     }
@@ -209,32 +154,6 @@ mod tests {
             let gap = polar(&here[i].translation.vector) - there[j].translation.vector;
             // Unitree's shoulders differ by 10 µm between the sides.
             assert!(gap.norm() < 3e-5, "{}: {gap:?}", link.name);
-        }
-    }
-
-    #[test]
-    fn seeing_the_mirrored_state_is_mirroring_what_is_seen() {
-        let (command, action) = ([1.0, 0.5, -0.3], std::array::from_fn(|i| i as f32));
-        let mut mirrored_action = [0.0; JOINTS];
-        mirror_action(&action, &mut mirrored_action);
-        let (mut seen, mut expected) = ([0.0; OBSERVATION], [0.0; OBSERVATION]);
-        policy_observation(&askew(), &command, &action, &mut seen);
-        mirror_observation(&seen, &mut expected);
-        policy_observation(
-            &mirror_state(&askew()),
-            &mirror_command(command),
-            &mirrored_action,
-            &mut seen,
-        );
-        for i in 0..OBSERVATION {
-            assert!((seen[i] - expected[i]).abs() < 1e-6, "observation {i}");
-        }
-        let (mut seen, mut expected) = ([0.0; FEATURES], [0.0; FEATURES]);
-        features(&askew(), &mut seen);
-        mirror_features(&seen, &mut expected);
-        features(&mirror_state(&askew()), &mut seen);
-        for i in 0..FEATURES {
-            assert!((seen[i] - expected[i]).abs() < 1e-6, "feature {i}");
         }
     }
 }

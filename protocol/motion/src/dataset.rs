@@ -11,19 +11,12 @@ use crate::clip::Clip;
 use crate::config::MotionConfig;
 use crate::error::MotionError;
 use crate::strata::Strata;
-use g1::observation::{ANGULAR_VELOCITY, LINEAR_VELOCITY, features};
-use g1::{FEATURES, RobotState};
+use g1::RobotState;
+use observation::{Scene, Table, Tables};
 use rand::{Rng, RngExt};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use vocabulary::Section;
-
-/// Which features are velocity forward and aside, m/s, and yaw rate, rad/s.
-const VELOCITY: [usize; 3] = [
-    LINEAR_VELOCITY.start,
-    LINEAR_VELOCITY.start + 1,
-    ANGULAR_VELOCITY.end - 1,
-];
 
 /// Clips with what is needed to draw from them.
 ///
@@ -33,8 +26,12 @@ pub struct Dataset {
     clips: Vec<Clip>,
     /// Running sum of the clips' weights.
     cumulative_weights: Vec<f32>,
-    /// Features of all frames of all clips, and where each clip's begin (in frames).
+    /// What is seen of all frames of all clips, a row each, and where each clip's begin (in frames).
     features: Vec<f32>,
+    /// Numbers of a row.
+    width: usize,
+    /// Velocity forward and aside, m/s, and yaw rate, rad/s, of all frames.
+    velocities: Vec<[f32; 3]>,
     starts: Vec<usize>,
     /// Shares of transitions, if every speed counts alike.
     strata: Option<Strata>,
@@ -109,6 +106,8 @@ impl Dataset {
         let mut data = Self {
             cumulative_weights: Vec::with_capacity(clips.len()),
             features: Vec::new(),
+            width: 0,
+            velocities: Vec::new(),
             starts: Vec::with_capacity(clips.len()),
             strata: None,
             clips,
@@ -122,12 +121,29 @@ impl Dataset {
             data.starts.push(frames);
             frames += clip.frames.len();
         }
-        data.features.resize(frames * FEATURES, 0.0);
         let states = data.clips.iter().flat_map(|clip| &clip.frames);
-        for (row, state) in data.features.chunks_exact_mut(FEATURES).zip(states) {
-            features(state, row);
+        let velocities = states.map(|state| {
+            let (linear, angular) = (state.velocity_in_base(), state.angular_velocity_in_base());
+            [linear.x, linear.y, angular.z]
+        });
+        data.velocities = velocities.collect();
+        data.seen_as(&Tables::default().discriminator)
+    }
+
+    /// The same clips, seen as a list says.
+    pub fn seen_as(mut self, table: &Table) -> Self {
+        self.width = table.width();
+        self.features.clear();
+        let states = self.clips.iter().flat_map(|clip| &clip.frames);
+        for state in states {
+            self.features.extend(table.row(&Scene::of(state)));
         }
-        data
+        self
+    }
+
+    /// Numbers that are seen of a frame.
+    pub fn width(&self) -> usize {
+        self.width
     }
 
     /// The clips, mirrored ones included.
@@ -158,7 +174,7 @@ impl Dataset {
             })
     }
 
-    /// Draws a window of motion: the features of states `spacing` steps apart, oldest first, 53 numbers each; every
+    /// Draws a window of motion: what is seen of states `spacing` steps apart, oldest first; every
     /// transition is equally often its end. In a cyclic clip the first frame follows the last; before
     /// the first frame of another clip there is nothing but that frame. Allocates nothing.
     ///
@@ -168,10 +184,11 @@ impl Dataset {
     /// # Panics
     /// If `out` is not as long as two states or more.
     pub fn sample_window(&self, rng: &mut impl Rng, spacing: usize, out: &mut [f32]) -> [f32; 3] {
-        let steps = out.len() / FEATURES;
+        let width = self.width;
+        let steps = out.len() / width;
         assert!(
-            steps >= 2 && out.len().is_multiple_of(FEATURES),
-            "a window has 53 numbers for each of two states or more"
+            steps >= 2 && out.len().is_multiple_of(width),
+            "a window has {width} numbers for each of two states or more"
         );
         let (index, i) = match &self.strata {
             Some(strata) => strata.draw(rng),
@@ -182,7 +199,8 @@ impl Dataset {
         };
         let clip = &self.clips[index];
         let length = clip.frames.len();
-        for (place, state) in out.chunks_exact_mut(FEATURES).enumerate() {
+        let mut sums = [0.0; 3];
+        for (place, state) in out.chunks_exact_mut(width).enumerate() {
             // The newest is the end of transition i.
             let back = (steps - 1 - place) * spacing;
             let frame = (i + 1) as isize - back as isize;
@@ -191,16 +209,16 @@ impl Dataset {
             } else {
                 frame.max(0)
             };
-            let at = (self.starts[index] + frame as usize) * FEATURES;
-            state.copy_from_slice(&self.features[at..at + FEATURES]);
+            let at = self.starts[index] + frame as usize;
+            state.copy_from_slice(&self.features[at * width..][..width]);
+            for (sum, velocity) in sums.iter_mut().zip(self.velocities[at]) {
+                *sum += velocity;
+            }
         }
         if clip.cyclic {
             return clip.command;
         }
-        VELOCITY.map(|feature| {
-            let sum: f32 = out.iter().skip(feature).step_by(FEATURES).sum();
-            sum / steps as f32
-        })
+        sums.map(|sum| sum / steps as f32)
     }
 
     /// Draws a frame with its clip's command, to start an episode from.

@@ -29,6 +29,7 @@ pub enum Rule {
 use Rule::{Fixed, Free, PhaseOne, Present, While};
 
 const SHAPE: &str = "networks keep the shape that their checkpoint has";
+const SEEN: &str = "networks and their statistics are of what was seen so far";
 const WIDTH: Rule = While(
     "exploration.kind",
     "scheduled",
@@ -65,6 +66,7 @@ const TABLE: &[(&str, Rule, &[&str])] = &[
     ("task", Free, &[]),
     ("randomization", Free, &[]),
     ("motion", Free, &[]),
+    ("observation", Fixed(SEEN), &[]),
     ("policy", Fixed(SHAPE), &["hidden", "critic_hidden"]),
     ("policy", Free, &["observation_clip"]),
     (
@@ -266,6 +268,27 @@ mod tests {
                 "{refused}"
             );
         }
+    }
+
+    #[test]
+    fn what_is_seen_stays() {
+        let before = "[observation.actor]\nterms = ['height']\npast = 0";
+        for (from, to) in [
+            ("past = 0", "past = 4"),
+            ("['height']", "['height', 'gravity']"),
+        ] {
+            let refused = outcome(before, &before.replace(from, to), false).unwrap_err();
+            assert!(
+                refused.contains("observation.actor")
+                    && refused.contains("seen so far")
+                    && refused.contains("--from"),
+                "{refused}"
+            );
+        }
+        assert_eq!(
+            rule("observation.critic.term.height.scale"),
+            Some(Fixed(SEEN))
+        );
     }
 
     #[test]

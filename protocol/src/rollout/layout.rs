@@ -3,7 +3,9 @@
 //! Separate because it is arithmetic on slices and knows no middleware. A rollout is one `[f32]`
 //! of named blocks (structure of arrays); within a block the order is [step][environment][number].
 
-use g1::{ACTION, FEATURES, OBSERVATION};
+use super::lists::Lists;
+use g1::ACTION;
+use observation::Widths;
 use vocabulary::Cause;
 
 /// Sizes of a rollout.
@@ -13,6 +15,8 @@ pub struct RolloutLayout {
     pub environments: usize,
     /// T, control steps of 20 ms.
     pub steps: usize,
+    /// What the rows hold.
+    pub lists: Lists,
 }
 
 /// Writes the views from the table of blocks, so that order and size are said once.
@@ -23,9 +27,14 @@ macro_rules! blocks {
     ) => {
         impl RolloutLayout {
             /// Numbers of one environment and step, all per-step blocks together.
-            pub const PER_STEP: usize = 0 $( + $step_width )*;
+            pub fn per_step(&self) -> usize {
+                0 $( + self.wide($step_width) )*
+            }
+
             /// Numbers of one environment in the blocks that do not grow with the steps.
-            pub const ONCE: usize = 0 $( + $once_width )*;
+            pub fn once(&self) -> usize {
+                0 $( + self.wide($once_width) )*
+            }
 
             /// Every block of a rollout, to be read.
             ///
@@ -34,8 +43,8 @@ macro_rules! blocks {
             pub fn view<'a>(&self, numbers: &'a [f32]) -> RolloutView<'a> {
                 assert_eq!(numbers.len(), self.len(), "length of a rollout");
                 let rest = numbers;
-                $( let ($step, rest) = rest.split_at(self.steps * self.environments * $step_width); )*
-                $( let ($once, rest) = rest.split_at(self.environments * $once_width); )*
+                $( let ($step, rest) = rest.split_at(self.steps * self.environments * self.wide($step_width)); )*
+                $( let ($once, rest) = rest.split_at(self.environments * self.wide($once_width)); )*
                 debug_assert!(rest.is_empty());
                 RolloutView { layout: *self, $( $step, )* $( $once, )* }
             }
@@ -47,8 +56,8 @@ macro_rules! blocks {
             pub fn view_mut<'a>(&self, numbers: &'a mut [f32]) -> RolloutViewMut<'a> {
                 assert_eq!(numbers.len(), self.len(), "length of a rollout");
                 let rest = numbers;
-                $( let ($step, rest) = rest.split_at_mut(self.steps * self.environments * $step_width); )*
-                $( let ($once, rest) = rest.split_at_mut(self.environments * $once_width); )*
+                $( let ($step, rest) = rest.split_at_mut(self.steps * self.environments * self.wide($step_width)); )*
+                $( let ($once, rest) = rest.split_at_mut(self.environments * self.wide($once_width)); )*
                 debug_assert!(rest.is_empty());
                 RolloutViewMut { layout: *self, $( $step, )* $( $once, )* }
             }
@@ -90,11 +99,11 @@ macro_rules! blocks {
             /// The first number that is NaN or infinite, time-out observations left out.
             fn not_finite(&self) -> Option<Flaw> {
                 let blocks = [
-                    $( (stringify!($step), self.$step, $step_width), )*
-                    $( (stringify!($once), self.$once, $once_width), )*
+                    $( (stringify!($step), self.$step, self.layout.wide($step_width)), )*
+                    $( (stringify!($once), self.$once, self.layout.wide($once_width)), )*
                 ];
                 blocks.into_iter().find_map(|(field, numbers, width)| {
-                    let meaningful = field != "timeout_observations";
+                    let meaningful = !field.starts_with("timeout_");
                     let index = first_not_finite(numbers).filter(|_| meaningful)?;
                     Some(Flaw { field, row: index / width, value: numbers[index] })
                 })
@@ -102,9 +111,12 @@ macro_rules! blocks {
 
             /// The blocks of step `step`, from 0.
             pub fn step(&self, step: usize) -> RolloutStep<'a> {
-                let environments = self.layout.environments;
+                let RolloutLayout { environments, .. } = self.layout;
                 RolloutStep {
-                    $( $step: &self.$step[step * environments * $step_width..][..environments * $step_width], )*
+                    $( $step: {
+                        let size = environments * self.layout.wide($step_width);
+                        &self.$step[step * size..][..size]
+                    }, )*
                 }
             }
         }
@@ -114,7 +126,10 @@ macro_rules! blocks {
             pub fn step(&mut self, step: usize) -> RolloutStepMut<'_> {
                 let environments = self.layout.environments;
                 RolloutStepMut {
-                    $( $step: &mut self.$step[step * environments * $step_width..][..environments * $step_width], )*
+                    $( $step: {
+                        let size = environments * self.layout.wide($step_width);
+                        &mut self.$step[step * size..][..size]
+                    }, )*
                     $( $once: &mut *self.$once, )*
                 }
             }
@@ -125,35 +140,45 @@ macro_rules! blocks {
 blocks! {
     each step: {
         /// o_t as the policy saw it, with sensor noise.
-        observations: OBSERVATION,
+        observations: |widths| widths.observation,
         /// a_t, sampled.
-        actions: ACTION,
+        actions: |_| ACTION,
         /// Mean of the distribution that a_t was sampled from.
-        means: ACTION,
+        means: |_| ACTION,
         /// Log-density of a_t under that distribution.
-        log_probs: 1,
+        log_probs: |_| 1,
         /// r^G, the task reward (Eq. 14).
-        task_rewards: 1,
+        task_rewards: |_| 1,
         /// Positive mechanical work of this control step in J, summed over the joints.
-        energies: 1,
+        energies: |_| 1,
         /// Squared planar velocity error in the heading frame, m²/s².
-        tracking_errors: 1,
+        tracking_errors: |_| 1,
         /// 0 the episode goes on, else why it ended: [`Cause::code`].
-        ends: 1,
+        ends: |_| 1,
         /// Steps done in the episode, this one included.
-        episode_steps: 1,
-        /// Features of the true state before the step.
-        features: FEATURES,
-        /// Features of the true state after the step; for a finished episode its own last.
-        next_features: FEATURES,
+        episode_steps: |_| 1,
+        /// What the discriminator sees of the true state before the step.
+        features: |widths| widths.features,
+        /// What it sees of the true state after the step; for a finished episode its own last.
+        next_features: |widths| widths.features,
         /// Ground reaction of the left and the right foot in N.
-        foot_forces: 2,
+        foot_forces: |_| 2,
+        /// What the critic sees before the step beside the observation, or instead; nothing where it sees what the policy
+        /// does.
+        critic: |widths| widths.critic,
+        /// What is measured beside, of the true state after the step and the command during it; see
+        /// [`observation::Tables::measured`].
+        measured: |widths| widths.measured,
     }
     once: {
         /// o_T, what the policy would see next.
-        last_observations: OBSERVATION,
+        last_observations: |widths| widths.observation,
         /// Last observation of the episode that timed out, per environment; meaningless where none did.
-        timeout_observations: OBSERVATION,
+        timeout_observations: |widths| widths.observation,
+        /// What the critic would see of its own after the last step.
+        last_critic: |widths| widths.critic,
+        /// What it saw of its own with the last observation of an episode that timed out.
+        timeout_critic: |widths| widths.critic,
     }
 }
 
@@ -191,10 +216,16 @@ impl RolloutView<'_> {
         ends.filter(|(_, end)| **end == time_out)
             .map(|(row, _)| row % environments)
             .find_map(|row| {
-                let seen = &self.timeout_observations[row * OBSERVATION..][..OBSERVATION];
-                let value = seen[first_not_finite(seen)?];
-                let field = "timeout_observations";
-                Some(Flaw { field, row, value })
+                let blocks = [
+                    ("timeout_observations", self.timeout_observations),
+                    ("timeout_critic", self.timeout_critic),
+                ];
+                blocks.into_iter().find_map(|(field, numbers)| {
+                    let width = numbers.len() / environments;
+                    let seen = &numbers[row * width..][..width];
+                    let value = seen[first_not_finite(seen)?];
+                    Some(Flaw { field, row, value })
+                })
             })
     }
 }
@@ -210,17 +241,22 @@ fn first_not_finite(numbers: &[f32]) -> Option<usize> {
 }
 
 impl RolloutLayout {
+    /// Numbers of a row of a block.
+    fn wide(&self, of: fn(&Widths) -> usize) -> usize {
+        of(&self.lists.widths)
+    }
+
     /// Numbers in the whole rollout; `None` where no memory could hold so many.
     pub fn checked_len(&self) -> Option<usize> {
-        let per_environment = self.steps.checked_mul(Self::PER_STEP)?;
-        let per_environment = per_environment.checked_add(Self::ONCE)?;
+        let per_environment = self.steps.checked_mul(self.per_step())?;
+        let per_environment = per_environment.checked_add(self.once())?;
         self.environments.checked_mul(per_environment)
     }
 
     /// Numbers in the whole rollout.
     #[expect(clippy::len_without_is_empty, reason = "a size, not a collection")]
-    pub const fn len(&self) -> usize {
-        self.environments * (self.steps * Self::PER_STEP + Self::ONCE)
+    pub fn len(&self) -> usize {
+        self.environments * (self.steps * self.per_step() + self.once())
     }
 }
 

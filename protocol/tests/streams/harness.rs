@@ -5,17 +5,20 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-use protocol::{Domain, Node, RolloutLayout, Shutdown};
+use protocol::{Domain, Lists, Node, RolloutLayout, Shutdown};
 use tempfile::TempDir;
 
 /// Longest time that anything in these tests may take.
 pub(crate) const DEADLINE: Duration = Duration::from_secs(15);
 
 /// A small rollout: 2·(3·242 + 164) numbers.
-pub(crate) const LAYOUT: RolloutLayout = RolloutLayout {
-    environments: 2,
-    steps: 3,
-};
+pub(crate) fn layout() -> RolloutLayout {
+    RolloutLayout {
+        environments: 2,
+        steps: 3,
+        lists: Lists::default(),
+    }
+}
 
 const ROLE: &str = "PROTOCOL_TEST_ROLE";
 const RUN: &str = "PROTOCOL_TEST_RUN";

@@ -4,15 +4,15 @@ use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 
 use protocol::{
-    Node, RolloutHeader, RolloutPublisher, RolloutSubscriber, SUPERVISOR_VARIABLE, SendOutcome,
-    Shutdown, Wake, WeightsHeader, WeightsOrder, WeightsPublisher, WeightsSubscriber,
+    Lists, Node, RolloutHeader, RolloutPublisher, RolloutSubscriber, SUPERVISOR_VARIABLE,
+    SendOutcome, Shutdown, Wake, WeightsHeader, WeightsOrder, WeightsPublisher, WeightsSubscriber,
     end_with_supervisor,
 };
 
-use crate::harness::{DEADLINE, LAYOUT, Run, assignment, command, eventually, say, until_released};
+use crate::harness::{DEADLINE, Run, assignment, command, eventually, layout, say, until_released};
 
 fn header(version: u64) -> WeightsHeader {
-    WeightsHeader::new(version, WeightsOrder::Collect, &[], 5.0, LAYOUT, true)
+    WeightsHeader::new(version, WeightsOrder::Collect, &[], 5.0, layout(), true)
 }
 
 /// What the other processes do.
@@ -24,7 +24,7 @@ fn other_process() {
     match role.as_str() {
         "learner" => {
             let node = join(&Shutdown::manual());
-            let _rollouts = RolloutSubscriber::new(&node).unwrap();
+            let _rollouts = RolloutSubscriber::new(&node, Lists::default()).unwrap();
             let weights = WeightsPublisher::new(&node, 1).unwrap();
             weights.broadcast(header(5), &[5.0]).unwrap();
             say("ready");
@@ -32,7 +32,7 @@ fn other_process() {
         }
         "actor" => {
             let node = join(&Shutdown::manual());
-            let mut rollouts = RolloutPublisher::new(&node, 0, LAYOUT, DEADLINE).unwrap();
+            let mut rollouts = RolloutPublisher::new(&node, 0, layout(), DEADLINE).unwrap();
             let loan = rollouts.loan().unwrap();
             rollouts.send(loan, RolloutHeader::default()).unwrap();
             say("ready");
@@ -69,7 +69,7 @@ fn a_killed_learner_s_places_are_free_again_and_actors_stay() {
     let run = Run::new();
     let actor = run.join("actor-0");
     let weights = WeightsSubscriber::new(&actor).unwrap();
-    let mut rollouts = RolloutPublisher::new(&actor, 0, LAYOUT, DEADLINE).unwrap();
+    let mut rollouts = RolloutPublisher::new(&actor, 0, layout(), DEADLINE).unwrap();
     let receive = |version| {
         eventually("weights", || {
             weights.wait(Duration::from_millis(20)).unwrap();
@@ -88,7 +88,7 @@ fn a_killed_learner_s_places_are_free_again_and_actors_stay() {
 
     // In this process: the ports of the actor were never reopened.
     let learner = run.join("learner");
-    let subscriber = RolloutSubscriber::new(&learner).unwrap();
+    let subscriber = RolloutSubscriber::new(&learner, Lists::default()).unwrap();
     let publisher = WeightsPublisher::new(&learner, 1).unwrap();
     publisher.broadcast(header(6), &[6.0]).unwrap();
     assert!(receive(6) > first_incarnation);
@@ -108,7 +108,7 @@ fn a_killed_learner_s_places_are_free_again_and_actors_stay() {
 fn a_killed_actor_is_replaced_and_its_last_rollout_still_counts() {
     let run = Run::new();
     let learner = run.join("learner");
-    let subscriber = RolloutSubscriber::new(&learner).unwrap();
+    let subscriber = RolloutSubscriber::new(&learner, Lists::default()).unwrap();
     let receive = || {
         eventually("a rollout", || {
             subscriber.wait(Duration::from_millis(20)).unwrap();
@@ -132,7 +132,7 @@ fn an_actor_held_up_by_a_killed_learner_comes_free() {
     let actor = run.join("actor-0");
     let mut learner = run.start("learner");
     learner.expect("ready");
-    let mut rollouts = RolloutPublisher::new(&actor, 0, LAYOUT, 2 * DEADLINE).unwrap();
+    let mut rollouts = RolloutPublisher::new(&actor, 0, layout(), 2 * DEADLINE).unwrap();
 
     let (sender, about_to_block) = channel();
     let sending = std::thread::spawn(move || {

@@ -3,23 +3,24 @@
 use std::time::Duration;
 
 use protocol::{
-    Answer, Directive, DirectivePublisher, DirectiveSubscriber, Entry, Ledger, RewardPublisher,
-    RewardReport, RewardSubscriber, RolloutHeader, RolloutPublisher, RolloutSubscriber,
-    SendOutcome, Wake, WeightsHeader, WeightsOrder, WeightsPublisher, WeightsSubscriber,
+    Answer, Directive, DirectivePublisher, DirectiveSubscriber, Entry, Ledger, Lists,
+    RewardPublisher, RewardReport, RewardSubscriber, RolloutHeader, RolloutPublisher,
+    RolloutSubscriber, SendOutcome, Wake, WeightsHeader, WeightsOrder, WeightsPublisher,
+    WeightsSubscriber,
 };
 
-use crate::harness::{DEADLINE, LAYOUT, Run, eventually};
+use crate::harness::{DEADLINE, Run, eventually, layout};
 
 #[test]
 fn a_rollout_written_in_place_is_read_in_place() {
     let run = Run::new();
     let (actor, learner) = (run.join("actor-3"), run.join("learner"));
-    let subscriber = RolloutSubscriber::new(&learner).unwrap();
-    let mut publisher = RolloutPublisher::new(&actor, 3, LAYOUT, DEADLINE).unwrap();
+    let subscriber = RolloutSubscriber::new(&learner, Lists::default()).unwrap();
+    let mut publisher = RolloutPublisher::new(&actor, 3, layout(), DEADLINE).unwrap();
 
     let mut loan = publisher.loan().unwrap();
     let mut view = loan.view_mut();
-    for step in 0..LAYOUT.steps {
+    for step in 0..layout().steps {
         view.step(step).task_rewards.fill(step as f32);
     }
     view.last_observations.fill(0.5);
@@ -46,6 +47,7 @@ fn a_rollout_written_in_place_is_read_in_place() {
         steps: 3,
         incarnation: actor.incarnation(),
         sequence: 0,
+        lists: Lists::default().into(),
         ..header
     };
     assert_eq!(*rollout.header(), expected);
@@ -59,9 +61,9 @@ fn a_rollout_written_in_place_is_read_in_place() {
 fn a_full_buffer_holds_the_actor_up_and_what_it_drops_is_counted() {
     let run = Run::new();
     let (actor, learner) = (run.join("actor-0"), run.join("learner"));
-    let subscriber = RolloutSubscriber::new(&learner).unwrap();
+    let subscriber = RolloutSubscriber::new(&learner, Lists::default()).unwrap();
     let patience = Duration::from_millis(60);
-    let mut publisher = RolloutPublisher::new(&actor, 0, LAYOUT, patience).unwrap();
+    let mut publisher = RolloutPublisher::new(&actor, 0, layout(), patience).unwrap();
     assert!(subscriber.receive().unwrap().is_none()); // connects
     let mut send = || {
         let loan = publisher.loan().unwrap();
@@ -95,8 +97,8 @@ fn a_full_buffer_holds_the_actor_up_and_what_it_drops_is_counted() {
 fn a_request_to_stop_frees_an_actor_that_is_held_up() {
     let run = Run::new();
     let (actor, learner) = (run.join("actor-0"), run.join("learner"));
-    let subscriber = RolloutSubscriber::new(&learner).unwrap();
-    let mut publisher = RolloutPublisher::new(&actor, 0, LAYOUT, 2 * DEADLINE).unwrap();
+    let subscriber = RolloutSubscriber::new(&learner, Lists::default()).unwrap();
+    let mut publisher = RolloutPublisher::new(&actor, 0, layout(), 2 * DEADLINE).unwrap();
     assert!(subscriber.receive().unwrap().is_none()); // connects
     let mut send = || {
         let loan = publisher.loan().unwrap();
@@ -112,7 +114,7 @@ fn a_request_to_stop_frees_an_actor_that_is_held_up() {
 fn without_a_learner_a_rollout_is_lost_and_said_so() {
     let run = Run::new();
     let actor = run.join("actor-0");
-    let mut publisher = RolloutPublisher::new(&actor, 0, LAYOUT, DEADLINE).unwrap();
+    let mut publisher = RolloutPublisher::new(&actor, 0, layout(), DEADLINE).unwrap();
     let loan = publisher.loan().unwrap();
     let outcome = publisher.send(loan, RolloutHeader::default()).unwrap();
     assert_eq!(outcome, SendOutcome::Lost);
@@ -125,7 +127,7 @@ fn a_late_actor_gets_the_newest_weights_and_only_those() {
     let (learner, actor) = (run.join("learner"), run.join("actor-0"));
     let publisher = WeightsPublisher::new(&learner, 4).unwrap();
     let header =
-        |version| WeightsHeader::new(version, WeightsOrder::Collect, &[8], 5.0, LAYOUT, true);
+        |version| WeightsHeader::new(version, WeightsOrder::Collect, &[8], 5.0, layout(), true);
     publisher.broadcast(header(1), &[1.0; 4]).unwrap();
     publisher.broadcast(header(2), &[2.0; 4]).unwrap();
 
@@ -153,7 +155,7 @@ fn weights_in_use_do_not_hinder_newer_ones() {
     let publisher = WeightsPublisher::new(&learner, 1).unwrap();
     let subscriber = WeightsSubscriber::new(&actor).unwrap();
     let broadcast = |version| {
-        let header = WeightsHeader::new(version, WeightsOrder::Collect, &[], 5.0, LAYOUT, false);
+        let header = WeightsHeader::new(version, WeightsOrder::Collect, &[], 5.0, layout(), false);
         publisher.broadcast(header, &[version as f32]).unwrap();
     };
     broadcast(1);
@@ -185,7 +187,7 @@ fn weights_outlive_more_broadcasts_than_memory_is_reserved_for() {
     let publisher = WeightsPublisher::new(&learner, 2).unwrap();
     let subscriber = WeightsSubscriber::new(&actor).unwrap();
     for version in 0..100 {
-        let header = WeightsHeader::new(version, WeightsOrder::Collect, &[], 5.0, LAYOUT, false);
+        let header = WeightsHeader::new(version, WeightsOrder::Collect, &[], 5.0, layout(), false);
         publisher.broadcast(header, &[version as f32; 2]).unwrap();
     }
     let weights = subscriber.newest().unwrap().unwrap();
@@ -267,13 +269,13 @@ fn the_learner_waits_for_the_answer_to_its_own_report() {
 fn a_request_to_stop_is_said_once_and_then_waiting_goes_on() {
     let run = Run::new();
     let (learner, actor) = (run.join("learner"), run.join("actor-0"));
-    let subscriber = RolloutSubscriber::new(&learner).unwrap();
+    let subscriber = RolloutSubscriber::new(&learner, Lists::default()).unwrap();
     learner.shutdown().request();
     assert_eq!(subscriber.wait(DEADLINE).unwrap(), Wake::Shutdown);
     // A learner that brings its iteration to an end neither spins nor misses a rollout.
     let short = Duration::from_millis(5);
     assert_eq!(subscriber.wait(short).unwrap(), Wake::Timeout);
-    let mut publisher = RolloutPublisher::new(&actor, 0, LAYOUT, DEADLINE).unwrap();
+    let mut publisher = RolloutPublisher::new(&actor, 0, layout(), DEADLINE).unwrap();
     let loan = publisher.loan().unwrap();
     publisher.send(loan, RolloutHeader::default()).unwrap();
     assert_eq!(subscriber.wait(DEADLINE).unwrap(), Wake::Message);
@@ -285,7 +287,7 @@ fn two_runs_never_meet() {
     let (learner, actor) = (here.join("learner"), there.join("actor-0"));
     let publisher = WeightsPublisher::new(&learner, 1).unwrap();
     let subscriber = WeightsSubscriber::new(&actor).unwrap();
-    let header = WeightsHeader::new(1, WeightsOrder::Collect, &[], 5.0, LAYOUT, true);
+    let header = WeightsHeader::new(1, WeightsOrder::Collect, &[], 5.0, layout(), true);
     publisher.broadcast(header, &[1.0]).unwrap();
     learner.tick();
     assert_eq!(

@@ -5,17 +5,20 @@ use rand_pcg::Pcg64;
 
 use super::*;
 
+/// Numbers that the policies here see.
+const INPUTS: usize = 82;
+
 /// Weights of a plausible network: means near zero, layers scaled by √(1/in), σ between 0.2 and 1.
 fn random_weights(shape: &Shape, seed: u64) -> Vec<f32> {
     let mut rng = Pcg64::seed_from_u64(seed);
     let mut flat = vec![0.0; shape.len()];
-    flat[MEAN]
+    flat[shape.mean()]
         .iter_mut()
         .for_each(|x| *x = rng.random_range(-1.0..1.0));
-    flat[INVERSE_DEVIATION]
+    flat[shape.inverse_deviation()]
         .iter_mut()
         .for_each(|x| *x = rng.random_range(0.5..3.0));
-    flat[SIGMA]
+    flat[shape.sigma()]
         .iter_mut()
         .for_each(|x| *x = rng.random_range(0.2..1.0));
     for place in shape.layers() {
@@ -81,10 +84,10 @@ fn reference(shape: &Shape, flat: &[f32], observation: &[f32]) -> Vec<f64> {
 
 #[test]
 fn a_network_of_one_unit_by_hand() {
-    let shape = Shape::new(&[1]);
+    let shape = Shape::new(INPUTS, &[1]);
     let mut flat = vec![0.0; shape.len()];
-    flat[INVERSE_DEVIATION].fill(2.0);
-    flat[SIGMA].fill(1.0);
+    flat[shape.inverse_deviation()].fill(2.0);
+    flat[shape.sigma()].fill(1.0);
     flat[0] = 1.0; // mean of the first observation
     let layers: Vec<_> = shape.layers().collect();
     flat[layers[0].weights.start] = 0.5; // first observation → unit
@@ -111,7 +114,7 @@ fn a_network_of_one_unit_by_hand() {
 #[test]
 fn it_agrees_with_plain_loops() {
     for hidden in [&[][..], &[1], &[33, 31], &[256, 128, 64], &[512, 256, 128]] {
-        let shape = Shape::new(hidden);
+        let shape = Shape::new(INPUTS, hidden);
         let flat = random_weights(&shape, 3);
         let observations = random_observations(101, 4);
         let out = means(&mut loaded(&shape, &flat), &observations);
@@ -131,7 +134,7 @@ fn it_agrees_with_plain_loops() {
 
 #[test]
 fn a_row_has_the_same_bits_in_every_batch() {
-    let shape = Shape::new(&[64, 40]);
+    let shape = Shape::new(INPUTS, &[64, 40]);
     let mut policy = loaded(&shape, &random_weights(&shape, 5));
     let observations = random_observations(300, 6);
     let alone: Vec<f32> = observations
@@ -160,7 +163,7 @@ fn a_row_has_the_same_bits_in_every_batch() {
 
 #[test]
 fn samples_repeat_with_the_seed_and_their_density_is_that_of_the_action() {
-    let shape = Shape::new(&[32]);
+    let shape = Shape::new(INPUTS, &[32]);
     let flat = random_weights(&shape, 7);
     let mut policy = loaded(&shape, &flat);
     let n = 50;
@@ -189,7 +192,7 @@ fn samples_repeat_with_the_seed_and_their_density_is_that_of_the_action() {
         let at = |values: &[f32], i: usize| f64::from(values[row * OUTPUTS + i]);
         let expected: f64 = (0..OUTPUTS)
             .map(|i| {
-                let sigma = f64::from(flat[SIGMA.start + i]);
+                let sigma = f64::from(flat[shape.sigma().start + i]);
                 let z = (at(&actions, i) - at(&drawn_means, i)) / sigma;
                 -0.5 * z * z - sigma.ln() - 0.5 * std::f64::consts::TAU.ln()
             })
@@ -201,7 +204,7 @@ fn samples_repeat_with_the_seed_and_their_density_is_that_of_the_action() {
 
 #[test]
 fn refused_weights_leave_the_old_ones() {
-    let shape = Shape::new(&[8]);
+    let shape = Shape::new(INPUTS, &[8]);
     let good = random_weights(&shape, 9);
     let mut policy = loaded(&shape, &good);
     let observations = random_observations(3, 10);
@@ -227,7 +230,7 @@ fn refused_weights_leave_the_old_ones() {
         Err(PolicyError::NotFinite { index: 200, .. })
     ));
     bad[200] = 0.0;
-    bad[SIGMA.start + 5] = 0.0;
+    bad[shape.sigma().start + 5] = 0.0;
     assert_eq!(
         policy.load(&bad),
         Err(PolicyError::Deviation {
@@ -241,7 +244,7 @@ fn refused_weights_leave_the_old_ones() {
 
 #[test]
 fn a_nan_observation_spoils_its_own_row_only() {
-    let shape = Shape::new(&[16, 16]);
+    let shape = Shape::new(INPUTS, &[16, 16]);
     let mut policy = loaded(&shape, &random_weights(&shape, 11));
     let mut observations = random_observations(14, 12);
     let clean = means(&mut policy, &observations);
@@ -255,7 +258,7 @@ fn a_nan_observation_spoils_its_own_row_only() {
 #[test]
 fn without_weights_the_mean_action_is_zero() {
     let out = means(
-        &mut Policy::new(Shape::new(&[512, 256, 128]), 5.0),
+        &mut Policy::new(Shape::new(INPUTS, &[512, 256, 128]), 5.0),
         &random_observations(2, 13),
     );
     assert!(out.iter().all(|&action| action == 0.0));
@@ -264,10 +267,10 @@ fn without_weights_the_mean_action_is_zero() {
 #[test]
 fn observations_are_cut_to_the_clip_that_the_weights_were_trained_with() {
     // A linear policy whose action 2 is the first observation, normalised by mean 0 and deviation 1.
-    let shape = Shape::new(&[]);
+    let shape = Shape::new(INPUTS, &[]);
     let mut flat = vec![0.0; shape.len()];
-    flat[INVERSE_DEVIATION].fill(1.0);
-    flat[SIGMA].fill(1.0);
+    flat[shape.inverse_deviation()].fill(1.0);
+    flat[shape.sigma()].fill(1.0);
     let layer = shape.layers().next().unwrap();
     flat[layer.weights.start + 2] = 1.0;
     let mut observation = [0.0; INPUTS];

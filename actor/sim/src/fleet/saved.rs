@@ -4,7 +4,6 @@ use super::Fleet;
 use crate::env::Environment;
 use crate::error::SimError;
 use crate::physics::SavedBodies;
-use g1::{FEATURES, OBSERVATION};
 use serde::{Deserialize, Serialize};
 
 /// What a snapshot holds: all that a continuation depends on, configuration aside.
@@ -13,6 +12,7 @@ struct Snapshot<E, F> {
     bodies: SavedBodies,
     environments: E,
     observations: F,
+    critic: F,
     features: F,
     faults: u64,
 }
@@ -24,6 +24,7 @@ impl Fleet {
             bodies: self.bodies.save(),
             environments: &self.environments,
             observations: &self.observations,
+            critic: &self.critic,
             features: &self.features,
             faults: self.faults,
         };
@@ -41,8 +42,10 @@ impl Fleet {
                 source,
             })?;
         let (found, expected) = (snapshot.environments.len(), self.len());
-        let whole = snapshot.observations.len() == found * OBSERVATION
-            && snapshot.features.len() == found * FEATURES;
+        let widths = self.setting.tables.widths();
+        let whole = snapshot.observations.len() == found * widths.observation
+            && snapshot.critic.len() == found * widths.critic
+            && snapshot.features.len() == found * widths.features;
         if found != expected || !whole {
             return Err(SimError::Count { found, expected });
         }
@@ -53,6 +56,7 @@ impl Fleet {
         }
         self.environments = snapshot.environments;
         self.observations = snapshot.observations;
+        self.critic = snapshot.critic;
         self.features = snapshot.features;
         self.faults = snapshot.faults;
         self.forget_last_steps();

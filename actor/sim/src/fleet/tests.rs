@@ -5,6 +5,7 @@ mod faults;
 mod repeat;
 mod reward;
 mod rows;
+mod seen;
 mod table;
 
 use super::*;
@@ -19,7 +20,7 @@ use crate::termination::TerminationConfig;
 use crate::termination::fall::FallConfig;
 use crate::termination::stray::StrayConfig;
 use crate::termination::time_out::TimeOutConfig;
-use g1::JOINTS;
+use g1::{FEATURES, JOINTS, OBSERVATION, observation};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -29,7 +30,7 @@ const ENGINES: [Physics; 2] = [Physics::Rapier, Physics::Batched];
 const UNTOUCHED: f32 = -77.0;
 
 fn step(fleet: &mut Fleet, actions: &[f32]) -> StepRows {
-    let mut rows = StepRows::filled(fleet.len(), UNTOUCHED);
+    let mut rows = StepRows::of(fleet, UNTOUCHED);
     fleet.step(actions, &mut rows.out());
     rows
 }

@@ -1,67 +1,102 @@
-//! Sensor noise: the five rows of Table I that blur what the policy observes.
+//! Sensor noise: the five rows of Table I that blur what the policy observes, and what a list says of its terms.
 //!
-//! Separate because it is drawn for every number of every observation: laid out once as the numbers of an observation
-//! are, so that one loop without questions adds it.
+//! Separate because it is drawn for every number of every observation: laid out once as the numbers of a frame are, so
+//! that one loop without questions adds it.
 
-use super::{RandomizationConfig, Row};
-use g1::{OBSERVATION, observation};
+use super::RandomizationConfig;
+use observation::{Kind, Table};
 use rand::{Rng, RngExt};
-use std::ops::Range;
 
-/// Random words for the noise of an observation, two numbers each: as many as fill vectors of every width.
+/// Random words for the noise of a block, two numbers each: as many as fill vectors of every width.
 const WORDS: usize = 32;
-/// Numbers of an observation that noise is laid out for. The last five are actions and have none.
+/// Numbers of a frame that noise is laid out for together.
 const NUMBERS: usize = 2 * WORDS;
-const _: () = assert!(observation::JOINT_VELOCITY.end <= NUMBERS && NUMBERS <= OBSERVATION);
 /// Levels that a number's noise has: enough for a sensor.
 const LEVELS: f32 = 65_536.0;
 
-/// Noise of the numbers of an observation: uniform from `least`, over a `span`; both 0 where there is none.
+/// Noise of the numbers of a frame, in blocks; those without noise are not among them.
 pub(crate) struct SensorNoise {
-    on: bool,
+    blocks: Vec<Block>,
+}
+
+/// Uniform from `least`, over a `span`; both 0 where there is none.
+struct Block {
+    /// Which of the frame's blocks it is.
+    index: usize,
     least: [f32; NUMBERS],
     span: [f32; NUMBERS],
 }
 
 impl SensorNoise {
-    /// As a table says.
-    pub(crate) fn of(table: &RandomizationConfig) -> Self {
-        let rows: [(Option<Row>, Range<usize>); 5] = [
-            (table.linear_velocity_noise, observation::LINEAR_VELOCITY),
-            (table.angular_velocity_noise, observation::ANGULAR_VELOCITY),
-            (table.gravity_noise, observation::GRAVITY),
-            (table.joint_position_noise, observation::JOINT_POSITION),
-            (table.joint_velocity_noise, observation::JOINT_VELOCITY),
-        ];
-        let mut noise = Self {
-            on: rows.iter().any(|(row, _)| row.is_some()),
+    /// None at all.
+    pub(crate) fn none() -> Self {
+        Self { blocks: Vec::new() }
+    }
+
+    /// As Table I says of what terms measure, widened by what a list says of each.
+    pub(crate) fn of(rows: &RandomizationConfig, seen: &Table) -> Self {
+        let count = seen.frame_width().div_ceil(NUMBERS);
+        let block = |index| Block {
+            index,
             least: [0.0; NUMBERS],
             span: [0.0; NUMBERS],
         };
-        for (row, numbers) in rows {
-            if let Some(Row {
-                range: [least, greatest],
-            }) = row
-            {
-                noise.least[numbers.clone()].fill(least);
-                noise.span[numbers].fill(greatest - least);
+        let mut blocks: Vec<Block> = (0..count).map(block).collect();
+        let mut on = vec![false; count];
+        for (entry, numbers) in seen.in_frame() {
+            let row = match entry.term.kind {
+                Kind::LinearVelocity => rows.linear_velocity_noise,
+                Kind::AngularVelocity => rows.angular_velocity_noise,
+                Kind::Gravity => rows.gravity_noise,
+                Kind::JointPosition => rows.joint_position_noise,
+                Kind::JointVelocity => rows.joint_velocity_noise,
+                Kind::Length | Kind::Beside => None,
+            };
+            if row.is_none() && entry.noise == 0.0 {
+                continue;
+            }
+            let [least, greatest] = row.map_or([0.0; 2], |row| row.range);
+            for number in numbers {
+                let (block, place) = (number / NUMBERS, number % NUMBERS);
+                on[block] = true;
+                blocks[block].least[place] = least - entry.noise;
+                blocks[block].span[place] = greatest - least + 2.0 * entry.noise;
             }
         }
-        noise
+        blocks.retain(|block| on[block.index]);
+        Self { blocks }
     }
 
-    /// Adds a fresh draw to an observation; draws nothing where there is none.
-    pub(crate) fn blur(&self, observation: &mut [f32; OBSERVATION], rng: &mut impl Rng) {
-        if !self.on {
+    /// Adds a fresh draw to a frame; draws nothing where there is none.
+    pub(crate) fn blur(&self, frame: &mut [f32], rng: &mut impl Rng) {
+        if self.blocks.is_empty() {
             return;
         }
         let key: u64 = rng.random();
+        for block in &self.blocks {
+            let rest = &mut frame[block.index * NUMBERS..];
+            if let Some(whole) = rest.first_chunk_mut() {
+                block.blur(key, whole);
+            } else {
+                let mut whole = [0.0; NUMBERS];
+                whole[..rest.len()].copy_from_slice(rest);
+                block.blur(key, &mut whole);
+                rest.copy_from_slice(&whole[..rest.len()]);
+            }
+        }
+    }
+}
+
+impl Block {
+    #[inline]
+    fn blur(&self, key: u64, numbers: &mut [f32; NUMBERS]) {
         // Not by a function of the index, which becomes 32 calls.
         let mut words = [0; WORDS];
+        let first = (self.index * WORDS) as u32;
         for (i, place) in words.iter_mut().enumerate() {
-            *place = word(key, i as u32);
+            *place = word(key, first + i as u32);
         }
-        let rows = observation.as_chunks_mut::<WORDS>().0.iter_mut();
+        let rows = numbers.as_chunks_mut::<WORDS>().0.iter_mut();
         let ranges = self.least.as_chunks().0.iter().zip(self.span.as_chunks().0);
         for (half, (numbers, (least, span))) in rows.zip(ranges).enumerate() {
             let (least, span): (&[f32; WORDS], &[f32; WORDS]) = (least, span);
@@ -89,13 +124,15 @@ fn word(key: u64, i: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use g1::{OBSERVATION, observation::JOINT_VELOCITY};
+    use observation::Tables;
     use rand::SeedableRng;
     use rand_pcg::Pcg64Mcg;
 
     #[test]
     fn noise_is_uniform_and_its_numbers_know_nothing_of_each_other() {
         let table = RandomizationConfig::table_one();
-        let noise = SensorNoise::of(&table);
+        let noise = SensorNoise::of(&table, &Tables::default().actor);
         let mut rng = Pcg64Mcg::seed_from_u64(3);
         let draws = 20_000;
         let (mut square, mut neighbours, mut halves, mut times) = (0.0, 0.0, 0.0, 0.0);
@@ -104,10 +141,9 @@ mod tests {
             let mut seen = [0.0; OBSERVATION];
             noise.blur(&mut seen, &mut rng);
             // Joint velocities, ±1.5 rad/s, as parts of their size.
-            let part = |i: usize| f64::from(seen[observation::JOINT_VELOCITY.start + i]) / 1.5;
+            let part = |i: usize| f64::from(seen[JOINT_VELOCITY.start + i]) / 1.5;
             // A joint position shares its word with the velocity 32 numbers further.
-            let position =
-                f64::from(seen[observation::JOINT_VELOCITY.start + 5 - WORDS + 9]) / 0.01;
+            let position = f64::from(seen[JOINT_VELOCITY.start + 5 - WORDS + 9]) / 0.01;
             square += part(5) * part(5);
             neighbours += part(5) * part(6);
             halves += part(14) * position;
@@ -121,5 +157,59 @@ mod tests {
         for product in [neighbours, halves, times] {
             assert!((product / n).abs() < 0.012, "{}", product / n);
         }
+    }
+
+    fn list(text: &str) -> Table {
+        let config: observation::ObservationConfig = toml::from_str(text).unwrap();
+        config.tables().unwrap().actor
+    }
+
+    #[test]
+    fn a_lists_noise_widens_that_of_the_table_and_stays_within() {
+        let seen = list(
+            "[actor]\nterms = ['height', 'gravity', 'previous_action', 'joint_velocity', 'command']\n\
+             [actor.term.height]\nnoise = 0.5\n[actor.term.gravity]\nnoise = 0.95\n\
+             [actor.term.command]\nnoise = 2.0",
+        );
+        let rows = RandomizationConfig::only(["gravity_noise"]).unwrap();
+        let noise = SensorNoise::of(&rows, &seen);
+        let mut rng = Pcg64Mcg::seed_from_u64(4);
+        // Height ±0.5, gravity ±(0.05 + 0.95), actions and joints none, the command (from number 50 on) ±2.
+        let sizes = |i: usize| match i {
+            0 => 0.5,
+            1..4 => 1.0,
+            50..53 => 2.0,
+            _ => 0.0,
+        };
+        let mut widest = [0.0_f32; 53];
+        for _ in 0..400 {
+            let mut frame = [0.0; 53];
+            noise.blur(&mut frame, &mut rng);
+            for (i, (widest, number)) in widest.iter_mut().zip(frame).enumerate() {
+                assert!(number.abs() <= sizes(i), "number {i}: {number}");
+                *widest = widest.max(number.abs());
+            }
+        }
+        // The greatest of 400 is beyond 95 % with a chance of 1 − 0.95⁴⁰⁰.
+        for (i, widest) in widest.into_iter().enumerate() {
+            assert!(widest >= 0.95 * sizes(i), "number {i}: {widest}");
+        }
+    }
+
+    #[test]
+    fn numbers_of_further_blocks_have_noise_of_their_own() {
+        let seen = list("[actor]\nterms = ['joint_velocity', 'joint_angle', 'joint_position']");
+        let noise = SensorNoise::of(&RandomizationConfig::table_one(), &seen);
+        let mut rng = Pcg64Mcg::seed_from_u64(5);
+        let mut frame = [0.0; 69];
+        noise.blur(&mut frame, &mut rng);
+        assert!(frame.iter().all(|number| *number != 0.0));
+        // Of one size are 23 and 46 numbers; none of a block comes again in the next.
+        assert!(
+            frame[46..64]
+                .iter()
+                .all(|number| !frame[64..].contains(number))
+        );
+        assert!(frame[23..].iter().all(|number| number.abs() <= 0.01));
     }
 }

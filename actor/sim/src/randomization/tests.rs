@@ -122,12 +122,13 @@ fn rows_of_the_sensors() {
         ("joint_velocity_noise", 36..59, 1.5),
     ];
     let mut rng = rng();
+    let seen = observation::Tables::default().actor;
     let mut still = [0.25; g1::OBSERVATION];
-    SensorNoise::of(&none).blur(&mut still, &mut rng);
+    SensorNoise::of(&none, &seen).blur(&mut still, &mut rng);
     assert_eq!(still, [0.25; g1::OBSERVATION]);
     for (row, numbers, size) in rows {
         let config = RandomizationConfig::only([row]).unwrap();
-        let noise = SensorNoise::of(&config);
+        let noise = SensorNoise::of(&config, &seen);
         let mut blur = || {
             let mut observation = [0.0; g1::OBSERVATION];
             noise.blur(&mut observation, &mut rng);

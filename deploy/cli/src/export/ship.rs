@@ -65,7 +65,7 @@ fn critic(kept: &Kept) -> Result<Option<Vec<u8>>> {
     let Ok(bytes) = kept.part("learning.bin") else {
         return Ok(None);
     };
-    let mut learning = Learning::new(kept.learning.clone(), learner::robot(), 0)
+    let mut learning = Learning::new(kept.learning.clone(), learner::robot(&kept.tables), 0)
         .context("setting up the networks")?;
     learning
         .load(bytes)
@@ -138,7 +138,8 @@ mod tests {
         let subject = Subject::open(&place, walk).unwrap();
         // It acts: the mean action on a standing robot's observation is finite and not nothing.
         let mut policy = subject.policy().unwrap();
-        let (observation, mut action) = ([0.1; policy::INPUTS], [0.0; policy::OUTPUTS]);
+        assert!(subject.kept.tables.is_papers_actor());
+        let (observation, mut action) = ([0.1; g1::OBSERVATION], [0.0; policy::OUTPUTS]);
         policy.means(&observation, 1, &mut action);
         assert!(action.iter().all(|a| a.is_finite()) && action.iter().any(|a| a.abs() > 0.01));
 

@@ -62,8 +62,14 @@ pub(crate) fn record(subject: &Subject, show: &Show) -> Result<Recording> {
     } else {
         Starts::default()
     };
+    // Exact sensors where nothing is randomised.
+    let tables = match show.randomization == RandomizationConfig::default() {
+        true => subject.kept.tables.exact(),
+        false => subject.kept.tables.clone(),
+    };
     let begin = |seed| {
-        Fleet::new(
+        Fleet::seen_by(
+            &tables,
             show.physics,
             &task,
             &show.randomization,
@@ -74,7 +80,7 @@ pub(crate) fn record(subject: &Subject, show: &Show) -> Result<Recording> {
     };
     let mut fleet = begin(show.seed)?;
     let mut policy = subject.policy()?;
-    let mut rows = StepRows::filled(1, 0.0);
+    let mut rows = StepRows::of(&fleet, 0.0);
     let mut recording = Recording {
         title: format!("{}, {}", subject.kept.run_name()?, asked(&show.commands)),
         source: format!("iteration {}", subject.kept.iteration),

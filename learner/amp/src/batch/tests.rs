@@ -1,10 +1,11 @@
 //! Places of rollouts in the arrays, by hand.
 
 use super::*;
+use crate::robot::tests::{FEATURES, OBSERVATION, simple};
 
 #[test]
 fn rollouts_have_their_own_places() {
-    let mut batch = Batch::default();
+    let mut batch = Batch::new(simple().widths());
     batch.resize(2, 3, 2);
     batch.add_segment(1, 4);
     assert_eq!((batch.rows(), batch.robots()), (16, 8));
@@ -20,12 +21,12 @@ fn rollouts_have_their_own_places() {
     assert_eq!((batch.rows(), batch.robots()), (10, 6));
     assert_eq!(batch.ends[6..], [2.0; 4]);
     assert_eq!(batch.last_observations[2 * OBSERVATION], 2.0);
-    assert_eq!(batch.check(), Ok(()));
+    assert_eq!(batch.check(&simple().widths()), Ok(()));
 }
 
 #[test]
 fn time_outs_know_their_environment() {
-    let mut batch = Batch::default();
+    let mut batch = Batch::new(simple().widths());
     batch.resize(2, 2, 3);
     // second rollout (rows 6..12), second step (9..12), third environment
     batch.ends[11] = Cause::TimeOut.code();
@@ -35,20 +36,23 @@ fn time_outs_know_their_environment() {
 
 #[test]
 fn what_is_not_finite_is_named() {
-    let mut batch = Batch::default();
-    assert_eq!(batch.check(), Err(LearningError::EmptyBatch));
+    let mut batch = Batch::new(simple().widths());
+    assert_eq!(
+        batch.check(&simple().widths()),
+        Err(LearningError::EmptyBatch)
+    );
     batch.resize(1, 2, 2);
     batch.timeout_observations.fill(f32::NAN); // nothing timed out: these numbers mean nothing
-    assert_eq!(batch.check(), Ok(()));
+    assert_eq!(batch.check(&simple().widths()), Ok(()));
     batch.features[3 * FEATURES + 5] = f32::INFINITY;
-    let error = batch.check().expect_err("infinite");
+    let error = batch.check(&simple().widths()).expect_err("infinite");
     assert_eq!(
         error.to_string(),
         "field `features` of the batch, row 3, holds inf"
     );
     batch.features.pop();
     assert!(matches!(
-        batch.check(),
+        batch.check(&simple().widths()),
         Err(LearningError::BatchLength {
             field: "features",
             ..
@@ -58,7 +62,7 @@ fn what_is_not_finite_is_named() {
     batch.features.fill(0.0);
     batch.ends[2] = Cause::TimeOut.code();
     assert!(matches!(
-        batch.check(),
+        batch.check(&simple().widths()),
         Err(LearningError::BatchNotFinite {
             field: "timeout_observations",
             row: 0,

@@ -1,8 +1,8 @@
 //! `[discriminator]`: the judge of style.
 
 use super::Check;
-use crate::robot::FeatureKind;
-use crate::{COMMAND, FEATURES};
+use crate::COMMAND;
+use crate::robot::{Feature, FeatureKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, Section};
@@ -47,16 +47,17 @@ pub(crate) const REPLAY_SHARE: f32 = 0.5;
 /// Normalised features are clipped to ± this.
 pub(crate) const FEATURE_CLIP: f32 = 5.0;
 
-/// Least standard deviation of a feature, in its own unit: differences below it are not style. The recipe's: without that
-/// of joint velocities, exploration noise gives the policy away.
-pub(crate) fn floor(kind: FeatureKind) -> f32 {
-    match kind {
+/// Least standard deviation of a number that the discriminator sees, in what it is scaled to: differences below it are
+/// not style. The recipe's: without that of joint velocities, exploration noise gives the policy away.
+pub(crate) fn floor(feature: &Feature) -> f32 {
+    let in_units = match feature.kind {
         FeatureKind::Height => 0.03,         // m
         FeatureKind::LinearVelocity => 0.3,  // m/s
         FeatureKind::AngularVelocity => 0.5, // rad/s
         FeatureKind::JointPosition => 0.1,   // rad
         FeatureKind::JointVelocity => 2.0,   // rad/s
-    }
+    };
+    in_units * feature.scale
 }
 
 impl Default for DiscriminatorConfig {
@@ -112,8 +113,9 @@ impl Section for DiscriminatorConfig {
 }
 
 impl DiscriminatorConfig {
-    /// Numbers that it sees of a window: `[frames][53]`, then the command if it sees that.
-    pub fn width(&self) -> usize {
-        self.frames * FEATURES + self.command_blur.map_or(0, |blur| blur.len())
+    /// Numbers that it sees of a window of states of so many `features`: `[frames][features]`, then the command if it sees
+    /// that.
+    pub fn width(&self, features: usize) -> usize {
+        self.frames * features + self.command_blur.map_or(0, |blur| blur.len())
     }
 }

@@ -2,18 +2,15 @@
 
 use super::*;
 use crate::config::LearningConfig;
-use crate::robot::tests::simple;
+use crate::robot::FeatureKind;
+use crate::robot::tests::{FEATURES, feature, simple};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
 fn discriminator(config: &DiscriminatorConfig, threads: usize) -> Discriminator {
-    Discriminator::new(
-        config,
-        &simple().features,
-        threads,
-        &mut Pcg64::seed_from_u64(1),
-    )
+    let mut rng = Pcg64::seed_from_u64(1);
+    Discriminator::new(config, &simple(), threads, &mut rng)
 }
 
 fn small() -> DiscriminatorConfig {
@@ -116,10 +113,11 @@ fn motion_that_is_not_what_was_asked_for_is_told_apart() {
         command_blur: Some([0.2, 0.1, 0.5]),
         ..small()
     };
-    let mut features = simple().features;
-    features[1..4].fill(FeatureKind::LinearVelocity);
-    features[4..7].fill(FeatureKind::AngularVelocity);
-    let mut judge = Discriminator::new(&config, &features, 1, &mut Pcg64::seed_from_u64(1));
+    let mut robot = simple();
+    robot.features[1..4].fill(feature(FeatureKind::LinearVelocity));
+    robot.features[4..7].fill(feature(FeatureKind::AngularVelocity));
+    robot.velocities = Some([1, 2, 6]);
+    let mut judge = Discriminator::new(&config, &robot, 1, &mut Pcg64::seed_from_u64(1));
     assert_eq!(judge.width(), 2 * FEATURES + COMMAND);
     let rows = |command: f32, rng: &mut Pcg64| -> Vec<f32> {
         gaussian(512, 0.4, rng)

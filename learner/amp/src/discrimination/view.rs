@@ -5,9 +5,8 @@
 //! penalty (Eq. 5) keeps the judge flat along what it is given: of the command itself it hardly took notice, and
 //! found standing good style whatever was asked for.
 
+use crate::COMMAND;
 use crate::config::DiscriminatorConfig;
-use crate::robot::FeatureKind;
-use crate::{COMMAND, FEATURES};
 use networks::Scaling;
 
 /// A mapping of windows, fixed until the statistics change.
@@ -15,6 +14,8 @@ use networks::Scaling;
 pub struct View {
     /// Of all states of a window.
     pub(super) states: Scaling,
+    /// Numbers of a state.
+    features: usize,
     /// The inverse of what an error is measured in, if the command is seen.
     inverse: Option<[f32; COMMAND]>,
     /// Which features are the velocities that a command asks for.
@@ -29,12 +30,14 @@ impl View {
         state: Scaling,
     ) -> Self {
         let mut states = state;
+        let features = states.mean.len();
         for _ in 1..config.frames {
-            states.mean.extend_from_within(..FEATURES);
-            states.inverse.extend_from_within(..FEATURES);
+            states.mean.extend_from_within(..features);
+            states.inverse.extend_from_within(..features);
         }
         Self {
             states,
+            features,
             inverse: config.command_blur.map(|blur| blur.map(f32::recip)),
             velocity,
         }
@@ -52,23 +55,10 @@ impl View {
             self.states.apply(moved, out);
             let clip = self.states.clip;
             for (i, feature) in self.velocity.into_iter().enumerate() {
-                let sum: f32 = moved.iter().skip(feature).step_by(FEATURES).sum();
-                let mean = sum / (states / FEATURES) as f32;
+                let sum: f32 = moved.iter().skip(feature).step_by(self.features).sum();
+                let mean = sum / (states / self.features) as f32;
                 out.push(((mean - command[i]) * inverse[i]).clamp(-clip, clip));
             }
         }
     }
-}
-
-/// The features that say how fast the robot goes forward and aside, m/s, and turns, rad/s: the first two linear
-/// velocities and the last angular one.
-pub(super) fn velocities(features: &[FeatureKind]) -> [usize; COMMAND] {
-    let first = |kind| features.iter().position(|other| *other == kind);
-    let last = |kind| features.iter().rposition(|other| *other == kind);
-    let forward = first(FeatureKind::LinearVelocity).unwrap_or(0);
-    [
-        forward,
-        forward + 1,
-        last(FeatureKind::AngularVelocity).unwrap_or(0),
-    ]
 }

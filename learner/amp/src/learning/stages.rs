@@ -8,28 +8,28 @@ use crate::config::REPLAY_SHARE;
 use crate::discrimination;
 use crate::error::Fault;
 use crate::gae::{self, Returns};
+use crate::inference;
 use crate::ppo::{PpoFigures, Rows};
 use crate::report::moments;
+use crate::robot::Mirror;
 use crate::style::style_reward;
 use crate::window::{Cut, Past, repeat_oldest};
-use crate::{OBSERVATION, inference};
+use networks::Scaling;
 use rand::RngExt;
 
 /// Arrays over the rows of an iteration, kept between iterations.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
-    /// Windows as the discriminator sees them, `[row][frames][53]`.
+    /// Windows as the discriminator sees them, `[row][frames][features]`.
     pub(super) windows: Vec<f32>,
     pub(super) past: Past,
     pub(super) scores: Vec<f32>,
     pub(super) style_rewards: Vec<f32>,
     pub(super) rewards: Vec<f32>,
-    /// Normalised, `[row][82]`.
-    pub(super) observations: Vec<f32>,
-    /// Mirrored, as the robot would see it, `[row][82]`.
-    pub(super) mirrored: Vec<f32>,
-    /// The same, normalised.
-    pub(super) mirrored_scaled: Vec<f32>,
+    /// What the policy sees.
+    pub(super) seen: Seen,
+    /// What the critic sees; empty where that is the same.
+    pub(super) critic: Seen,
     pub(super) values: Vec<f32>,
     pub(super) last_values: Vec<f32>,
     pub(super) timeout_values: Vec<f32>,
@@ -40,6 +40,36 @@ pub(super) struct Scratch {
     /// What is normalised for a moment.
     pub(super) scaled: Vec<f32>,
     pub(super) scaled_policy: Vec<f32>,
+}
+
+/// Observations of one kind over the rows of an iteration.
+#[derive(Debug, Default)]
+pub(super) struct Seen {
+    /// Normalised, `[row][width]`.
+    pub(super) scaled: Vec<f32>,
+    /// Mirrored, as the robot would see it, `[row][width]`.
+    pub(super) mirrored: Vec<f32>,
+    /// The same, normalised.
+    pub(super) mirrored_scaled: Vec<f32>,
+}
+
+impl Seen {
+    /// Mirrors `rows`, or forgets what was mirrored.
+    fn mirror(&mut self, rows: &[f32], mirror: Option<&Mirror>, scaling: &Scaling) {
+        self.mirrored.clear();
+        self.mirrored_scaled.clear();
+        if let Some(mirror) = mirror {
+            let width = mirror.index.len();
+            self.mirrored.resize(rows.len(), 0.0);
+            for (row, out) in rows
+                .chunks_exact(width)
+                .zip(self.mirrored.chunks_exact_mut(width))
+            {
+                mirror.apply(row, out);
+            }
+            scaling.apply(&self.mirrored, &mut self.mirrored_scaled);
+        }
+    }
 }
 
 impl Learning {
@@ -75,7 +105,8 @@ impl Learning {
         let threads = self.config.ppo.threads;
         let Scratch {
             rewards,
-            observations,
+            seen,
+            critic,
             values,
             last_values,
             timeout_values,
@@ -84,28 +115,52 @@ impl Learning {
             scaled,
             ..
         } = &mut self.scratch;
-        let scaling = self.core.observations.scaling();
         let ppo = &self.core.ppo;
         let evaluate = |rows: &[f32], out: &mut Vec<f32>| {
             inference::outputs(ppo.critic_shape(), ppo.critic(), rows, threads, out);
         };
-        observations.clear();
-        scaling.apply(&batch.observations, observations);
+        seen.scaled.clear();
+        let scaling = self.core.observations.scaling();
+        scaling.apply(&batch.observations, &mut seen.scaled);
+        // What the critic sees: rows, those after the last step, those at which episodes were cut.
+        critic.scaled.clear();
+        let widths = batch.widths();
+        let (scaling, rows, last, cut_off, width) = match &self.core.critic {
+            None => {
+                let cut_off = &batch.timeout_observations;
+                (
+                    scaling,
+                    &seen.scaled,
+                    &batch.last_observations,
+                    cut_off,
+                    widths.observation,
+                )
+            }
+            Some(normalizer) => {
+                let scaling = normalizer.scaling();
+                scaling.apply(&batch.critic, &mut critic.scaled);
+                let cut_off = &batch.timeout_critic;
+                (
+                    scaling,
+                    &critic.scaled,
+                    &batch.last_critic,
+                    cut_off,
+                    widths.critic,
+                )
+            }
+        };
         values.clear();
-        evaluate(observations, values);
+        evaluate(rows, values);
 
         scaled.clear();
-        scaling.apply(&batch.last_observations, scaled);
+        scaling.apply(last, scaled);
         last_values.clear();
         evaluate(scaled, last_values);
 
         let time_outs: Vec<usize> = batch.time_outs().map(|(_, robot)| robot).collect();
         scaled.clear();
         for robot in &time_outs {
-            scaling.apply(
-                &batch.timeout_observations[robot * OBSERVATION..][..OBSERVATION],
-                scaled,
-            );
+            scaling.apply(&cut_off[robot * width..][..width], scaled);
         }
         let mut cut = Vec::new();
         evaluate(scaled, &mut cut);
@@ -155,21 +210,20 @@ impl Learning {
 
     pub(super) fn improve(&mut self, batch: &Batch, sigma: &[f32]) -> Result<PpoFigures, Fault> {
         let scratch = &mut self.scratch;
-        scratch.mirrored.clear();
-        scratch.mirrored_scaled.clear();
-        if self.config.ppo.mirrors() {
-            let mirror = &self.robot.observation_mirror;
-            scratch.mirrored.resize(batch.observations.len(), 0.0);
-            let rows = batch.observations.chunks_exact(OBSERVATION);
-            for (row, out) in rows.zip(scratch.mirrored.chunks_exact_mut(OBSERVATION)) {
-                mirror.apply(row, out);
-            }
-            let scaling = self.core.observations.scaling();
-            scaling.apply(&scratch.mirrored, &mut scratch.mirrored_scaled);
+        let mirrors = self.config.ppo.mirrors();
+        let mirror = Some(&self.robot.observation_mirror).filter(|_| mirrors);
+        let scaling = self.core.observations.scaling();
+        scratch.seen.mirror(&batch.observations, mirror, &scaling);
+        if let Some(normalizer) = &self.core.critic {
+            let mirror = self.robot.critic_mirror.as_ref().filter(|_| mirrors);
+            let scaling = normalizer.scaling();
+            scratch.critic.mirror(&batch.critic, mirror, &scaling);
         }
         let rows = Rows {
-            observations: &scratch.observations,
-            mirrored: &scratch.mirrored_scaled,
+            observations: &scratch.seen.scaled,
+            mirrored: &scratch.seen.mirrored_scaled,
+            critic: &scratch.critic.scaled,
+            mirrored_critic: &scratch.critic.mirrored_scaled,
             mirrored_share: self.config.ppo.mirrored_share_at(self.core.samples),
             kl_target: self.config.ppo.kl_target_at(self.core.samples),
             critic_alone: self.config.ppo.critic_alone_at(self.core.samples),
@@ -208,7 +262,8 @@ impl Learning {
         if (config.frames, config.spacing) != (2, 1) {
             for window in expert.chunks_exact_mut(width) {
                 let row = core.generator.random_range(0..batch.rows());
-                repeat_oldest(&mut window[..cut.states()], past.real(row, &cut));
+                let states = &mut window[..cut.states()];
+                repeat_oldest(states, past.real(row, &cut), cut.features);
             }
         }
         policy.clear();
@@ -236,7 +291,11 @@ impl Learning {
         let core = &mut self.core;
         core.observations.update(&batch.observations);
         // A mirrored robot's observations are as likely: statistics of both keep the two sides alike.
-        core.observations.update(&self.scratch.mirrored);
+        core.observations.update(&self.scratch.seen.mirrored);
+        if let Some(normalizer) = &mut core.critic {
+            normalizer.update(&batch.critic);
+            normalizer.update(&self.scratch.critic.mirrored);
+        }
         let rows = batch.rows();
         let cut = Cut::new(&self.config.discriminator, &self.robot);
         let mut window = Vec::with_capacity(core.discriminator.width());

@@ -1,10 +1,10 @@
 //! Whole iterations: the same bits again, through a saved state, and after a failure.
 
+mod critic;
 mod saved;
 
 use super::*;
-use crate::ACTION;
-use crate::robot::tests::simple;
+use crate::robot::tests::{ACTION, OBSERVATION, simple};
 use rand::RngExt;
 use vocabulary::Cause;
 
@@ -29,7 +29,7 @@ fn learning() -> Learning {
 /// Two rollouts of 6 steps of 5 robots: plausible numbers, a fall and a time-out.
 fn batch(learning: &Learning, seed: u64) -> Batch {
     let mut rng = Pcg64::seed_from_u64(seed);
-    let mut batch = Batch::default();
+    let mut batch = Batch::new(simple().widths());
     batch.resize(2, 6, 5);
     let sigma = learning.sigma();
     let mut draw = |numbers: &mut [f32], low: f32, high: f32| {
@@ -241,7 +241,10 @@ fn the_policy_is_told_with_its_statistics() {
     let mut learning = learning();
     let flat = learning.policy_flat().to_vec();
     // Before any batch: mean 0, inverse deviation 1, σ 0.6 for legs, 0.18 for waist and arms.
-    assert!(flat[..82].iter().all(|x| *x == 0.0) && flat[82..164].iter().all(|x| *x == 1.0));
+    assert!(
+        flat[..OBSERVATION].iter().all(|x| *x == 0.0)
+            && flat[OBSERVATION..2 * OBSERVATION].iter().all(|x| *x == 1.0)
+    );
     assert_eq!(flat[164], 0.6);
     assert!((flat[164 + 22] - 0.18).abs() < 1e-6);
     let mean = |learning: &mut Learning| learning.policy_flat()[2];
@@ -255,7 +258,7 @@ fn the_policy_is_told_with_its_statistics() {
         )
         .expect("finite");
     let column: f32 = (0..60)
-        .map(|row| batch.observations[row * 82 + 2])
+        .map(|row| batch.observations[row * OBSERVATION + 2])
         .sum::<f32>()
         / 60.0;
     assert!((mean(&mut learning) - column).abs() < 1e-5);

@@ -3,7 +3,7 @@
 use super::{Ppo, Rows};
 use crate::inference::CHUNK;
 use crate::minibatch::is_mirrored;
-use crate::{ACTION, OBSERVATION, surrogate};
+use crate::surrogate;
 use networks::{Mlp, shards, tensor, tracked_device, values};
 use std::ops::{AddAssign, Range};
 
@@ -63,6 +63,7 @@ impl Ppo {
             .map(|log| log.exp())
             .collect();
         let count = minibatch.indices.len();
+        let joints = self.actor.outputs;
         let mut sums = Sums {
             gradient: vec![0.0; self.weights.len()],
             ..Sums::default()
@@ -72,10 +73,10 @@ impl Ppo {
         for piece in shards::pieces(part, CHUNK) {
             let chunk = self.gather(minibatch, piece);
             let rows = |numbers: &[f32], columns| tensor(numbers.to_vec(), columns, &device);
-            let observations = tensor(chunk.observations, OBSERVATION, &device);
+            let observations = tensor(chunk.observations, self.actor.inputs, &device);
 
             let means = actor.forward(observations.clone());
-            let actions = rows(&chunk.actions, ACTION);
+            let actions = rows(&chunk.actions, joints);
             let density = surrogate::log_density(actions.clone(), means.clone(), log_sigma.clone());
             let loss = surrogate::clipped_surrogate(
                 density.clone(),
@@ -108,8 +109,13 @@ impl Ppo {
                     .for_each(|(a, b)| *a += b);
             }
 
+            let seen = if self.own_critic {
+                tensor(chunk.critic, self.critic.inputs, &device)
+            } else {
+                observations
+            };
             let loss = surrogate::value_loss(
-                critic.forward(observations),
+                critic.forward(seen),
                 tensor(chunk.returns, 1, &device),
                 count,
             );
@@ -124,7 +130,7 @@ impl Ppo {
                     sums.clipped += usize::from((ratio - 1.0).abs() > self.config.clip);
                 }
                 if *role == Role::Own {
-                    let action = i * ACTION..(i + 1) * ACTION;
+                    let action = i * joints..(i + 1) * joints;
                     sums.kl += surrogate::divergence(
                         &chunk.means[action.clone()],
                         minibatch.old_sigma,
@@ -144,7 +150,13 @@ impl Ppo {
     /// that is a lesson in symmetry has no advantage, and the mirrored mean for its action.
     fn gather(&self, minibatch: &Minibatch<'_>, piece: Range<usize>) -> Chunk {
         let Minibatch { rows, indices, .. } = minibatch;
-        let mut chunk = Chunk::with_capacity(piece.len());
+        let (inputs, joints) = (self.actor.inputs, self.actor.outputs);
+        let own = if self.own_critic {
+            self.critic.inputs
+        } else {
+            0
+        };
+        let mut chunk = Chunk::with_capacity(piece.len(), inputs, own, joints);
         for position in piece {
             let row = indices[position];
             let role = if is_mirrored(position, rows.mirrored_share) {
@@ -156,12 +168,14 @@ impl Ppo {
             } else {
                 Role::Own
             };
-            let observation = row * OBSERVATION..(row + 1) * OBSERVATION;
-            let action = row * ACTION..(row + 1) * ACTION;
+            let observation = row * inputs..(row + 1) * inputs;
+            let critic = row * own..(row + 1) * own;
+            let action = row * joints..(row + 1) * joints;
             if role == Role::Own {
                 chunk
                     .observations
                     .extend_from_slice(&rows.observations[observation]);
+                chunk.critic.extend_from_slice(&rows.critic[critic]);
                 chunk
                     .actions
                     .extend_from_slice(&rows.actions[action.clone()]);
@@ -175,10 +189,14 @@ impl Ppo {
                 chunk
                     .observations
                     .extend_from_slice(&rows.mirrored[observation]);
-                let mut out = [0.0; ACTION];
-                self.mirror.apply(&done[action], &mut out);
-                chunk.actions.extend_from_slice(&out);
-                chunk.means.extend_from_slice(&[0.0; ACTION]); // not read: KL is that of rows as they were
+                let mirrored = &rows.mirrored_critic;
+                chunk.critic.extend_from_slice(&mirrored[critic]);
+                let start = chunk.actions.len();
+                chunk.actions.resize(start + joints, 0.0);
+                let out = &mut chunk.actions[start..];
+                self.mirror.apply(&done[action], out);
+                // Not read: KL is that of rows as they were.
+                chunk.means.resize(start + joints, 0.0);
             }
             chunk.roles.push(role);
             chunk.log_probs.push(rows.log_probs[row]);
@@ -209,6 +227,7 @@ enum Role {
 /// Rows copied together.
 struct Chunk {
     observations: Vec<f32>,
+    critic: Vec<f32>,
     actions: Vec<f32>,
     means: Vec<f32>,
     log_probs: Vec<f32>,
@@ -220,12 +239,13 @@ struct Chunk {
 }
 
 impl Chunk {
-    fn with_capacity(rows: usize) -> Self {
+    fn with_capacity(rows: usize, inputs: usize, own: usize, joints: usize) -> Self {
         let column = || Vec::with_capacity(rows);
         Self {
-            observations: Vec::with_capacity(rows * OBSERVATION),
-            actions: Vec::with_capacity(rows * ACTION),
-            means: Vec::with_capacity(rows * ACTION),
+            observations: Vec::with_capacity(rows * inputs),
+            critic: Vec::with_capacity(rows * own),
+            actions: Vec::with_capacity(rows * joints),
+            means: Vec::with_capacity(rows * joints),
             log_probs: column(),
             advantages: column(),
             returns: column(),

@@ -2,7 +2,6 @@
 
 use super::part::{Minibatch, Sums};
 use super::{Ppo, RateSchedule};
-use crate::ACTION;
 use crate::config::{GRADIENT_NORM, GREATEST_RATE, KL_BAND, LEAST_RATE, RATE_FACTOR};
 use crate::error::Fault;
 use burn::tensor::Tensor;
@@ -64,12 +63,13 @@ impl Ppo {
         Fault::unless_finite(&self.weights, |i| self.name(i))
     }
 
-    /// ln σ `[1, 23]`: a differentiable weight if it is learned, else that of the given σ.
+    /// ln σ `[1, joints]`: a differentiable weight if it is learned, else that of the given σ.
     pub(super) fn log_sigma_tensor(&self, sigma: &[f32]) -> Tensor<2> {
         let device = tracked_device();
+        let joints = self.actor.outputs;
         match self.log_sigma_limits {
-            Some(_) => tensor(self.log_sigma().to_vec(), ACTION, &device).require_grad(),
-            None => tensor(sigma.iter().map(|s| s.ln()).collect(), ACTION, &device),
+            Some(_) => tensor(self.log_sigma().to_vec(), joints, &device).require_grad(),
+            None => tensor(sigma.iter().map(|s| s.ln()).collect(), joints, &device),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::config::{PolicyConfig, RateSchedule};
-use crate::robot::tests::simple;
+use crate::robot::tests::{ACTION, OBSERVATION, simple};
 use networks::{Mlp, tensor};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -26,13 +26,7 @@ fn config() -> LearningConfig {
 }
 
 fn ppo(config: &LearningConfig) -> Ppo {
-    let robot = simple();
-    Ppo::new(
-        config,
-        robot.action_mirror,
-        &robot.joints,
-        &mut Pcg64::seed_from_u64(1),
-    )
+    Ppo::new(config, &simple(), &mut Pcg64::seed_from_u64(1))
 }
 
 fn means(ppo: &Ppo, observations: &[f32]) -> Vec<f32> {
@@ -86,6 +80,8 @@ impl Bandit {
         Rows {
             observations: &self.observations,
             mirrored: &self.observations,
+            critic: &[],
+            mirrored_critic: &[],
             mirrored_share: 0.0,
             kl_target: config().ppo.kl_target.now(),
             critic_alone: false,

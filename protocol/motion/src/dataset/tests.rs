@@ -1,5 +1,7 @@
 use super::*;
 use crate::gait;
+use g1::FEATURES;
+use g1::observation::features;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
@@ -228,4 +230,20 @@ fn clips_of_files_are_examined_and_built_in_ones_are_sound() {
         [vec![crate::quality::Kind::Teleport], vec![], vec![]]
     );
     assert!((references[0].clip.weight - 0.5).abs() < 1e-6); // half of the folder's weight
+}
+
+#[test]
+fn clips_are_seen_as_a_list_says_and_obey_what_they_obeyed() {
+    let table = Table::plain(["key_bodies", "height"]);
+    let start = || Dataset::of(vec![gait::start(0.8).expect("a gait")]);
+    let (paper, other) = (start(), start().seen_as(&table));
+    assert_eq!((paper.width(), other.width()), (FEATURES, 16));
+    let mut rngs = [Pcg64Mcg::seed_from_u64(3), Pcg64Mcg::seed_from_u64(3)];
+    let (mut a, mut b) = ([0.0; 2 * FEATURES], [0.0; 2 * 16]);
+    for _ in 0..20 {
+        let command = paper.sample_window(&mut rngs[0], &mut a);
+        assert_eq!(other.sample_window(&mut rngs[1], &mut b), command);
+        // The same frames: the height is first in one and last in the other.
+        assert_eq!([a[0], a[FEATURES]], [b[15], b[31]]);
+    }
 }

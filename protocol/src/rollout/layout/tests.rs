@@ -2,24 +2,30 @@
 
 use super::*;
 
-const LAYOUT: RolloutLayout = RolloutLayout {
-    environments: 3,
-    steps: 2,
-};
+use g1::OBSERVATION;
+use observation::ObservationConfig;
+
+fn layout() -> RolloutLayout {
+    RolloutLayout {
+        environments: 3,
+        steps: 2,
+        lists: Lists::default(),
+    }
+}
 
 #[test]
 fn the_table_adds_up() {
     // 82 + 23 + 23 + six single numbers + 53 + 53 + 2 = 242 per step; 82 + 82 = 164 once.
-    assert_eq!(RolloutLayout::PER_STEP, 242);
-    assert_eq!(RolloutLayout::ONCE, 164);
+    assert_eq!(layout().per_step(), 242);
+    assert_eq!(layout().once(), 164);
     // 3·(2·242 + 164) = 3·648
-    assert_eq!(LAYOUT.len(), 1944);
+    assert_eq!(layout().len(), 1944);
 }
 
 #[test]
 fn blocks_follow_each_other_in_the_order_of_the_table() {
-    let numbers: Vec<f32> = (0..LAYOUT.len()).map(|index| index as f32).collect();
-    let view = LAYOUT.view(&numbers);
+    let numbers: Vec<f32> = (0..layout().len()).map(|index| index as f32).collect();
+    let view = layout().view(&numbers);
     assert_eq!(view.observations[0], 0.0);
     assert_eq!(view.actions[0], 492.0); // after 2·3·82
     assert_eq!(view.means[0], 630.0); // + 2·3·23
@@ -35,8 +41,8 @@ fn blocks_follow_each_other_in_the_order_of_the_table() {
 
 #[test]
 fn what_is_written_by_step_is_read_at_its_place_and_nothing_overlaps() {
-    let mut numbers = vec![0.0; LAYOUT.len()];
-    let mut view = LAYOUT.view_mut(&mut numbers);
+    let mut numbers = vec![0.0; layout().len()];
+    let mut view = layout().view_mut(&mut numbers);
     for step in 0..2 {
         let now = view.step(step);
         let blocks = [
@@ -63,7 +69,7 @@ fn what_is_written_by_step_is_read_at_its_place_and_nothing_overlaps() {
     view.last_observations.fill(1000.0);
     view.timeout_observations.fill(2000.0);
 
-    let view = LAYOUT.view(&numbers);
+    let view = layout().view(&numbers);
     assert!(view.step(0).observations.iter().all(|&n| n == 1.0));
     assert!(view.step(1).observations.iter().all(|&n| n == 101.0));
     assert!(view.step(1).ends.iter().all(|&n| n == 108.0)); // eighth block
@@ -79,9 +85,9 @@ fn what_is_written_by_step_is_read_at_its_place_and_nothing_overlaps() {
 #[test]
 fn numbers_that_cannot_be_are_found_and_named() {
     let flaw = |change: fn(&mut RolloutViewMut<'_>)| {
-        let mut numbers = vec![0.0; LAYOUT.len()];
-        change(&mut LAYOUT.view_mut(&mut numbers));
-        let flaw = LAYOUT.view(&numbers).flaw();
+        let mut numbers = vec![0.0; layout().len()];
+        change(&mut layout().view_mut(&mut numbers));
+        let flaw = layout().view(&numbers).flaw();
         flaw.map(|flaw| (flaw.field, flaw.row))
     };
     assert_eq!(flaw(|_| {}), None);
@@ -111,13 +117,41 @@ fn sizes_that_no_memory_holds_have_no_length() {
     let huge = RolloutLayout {
         environments: most,
         steps: most,
+        ..layout()
     };
     assert_eq!(huge.checked_len(), None);
-    assert_eq!(LAYOUT.checked_len(), Some(LAYOUT.len()));
+    assert_eq!(layout().checked_len(), Some(layout().len()));
 }
 
 #[test]
 #[should_panic(expected = "length of a rollout")]
 fn a_message_of_another_length_is_refused() {
-    LAYOUT.view(&[0.0; 7]);
+    layout().view(&[0.0; 7]);
+}
+
+#[test]
+fn what_only_the_critic_sees_has_blocks_of_its_own() {
+    let text = "[actor]\nterms = ['command', 'gravity']\n[critic]\nterms = ['actor', 'friction', 'foot_forces']";
+    let config: ObservationConfig = toml::from_str(text).unwrap();
+    let layout = RolloutLayout {
+        lists: (&config.tables().unwrap()).into(),
+        ..layout()
+    };
+    // 6 + 23 + 23 + six single numbers + 53 + 53 + 2 + 3 of the critic's own; 6 + 6 + 3 + 3 once.
+    assert_eq!((layout.per_step(), layout.once()), (169, 18));
+    let mut numbers = vec![0.0; layout.len()];
+    let mut view = layout.view_mut(&mut numbers);
+    view.step(1).critic.fill(1.0);
+    view.last_critic.fill(2.0);
+    view.timeout_critic[3] = f32::NAN;
+    let view = layout.view(&numbers);
+    assert_eq!((view.critic.len(), view.measured.len()), (2 * 3 * 3, 0));
+    assert!(view.step(0).critic.iter().all(|&n| n == 0.0));
+    assert!(view.step(1).critic.iter().all(|&n| n == 1.0));
+    assert_eq!(numbers[layout.len() - 18..][..9], [2.0; 9]);
+    // What the critic saw at a time-out counts where an episode timed out.
+    assert_eq!(layout.view(&numbers).flaw(), None);
+    layout.view_mut(&mut numbers).ends[4] = Cause::TimeOut.code();
+    let flaw = layout.view(&numbers).flaw().unwrap();
+    assert_eq!((flaw.field, flaw.row), ("timeout_critic", 1));
 }
