@@ -298,9 +298,8 @@ fn shape(config: &LearnerConfig) -> String {
         learning.policy.hidden, learning.policy.critic_hidden, learning.discriminator.hidden
     );
     // Checkpoints of before there were lists are of the paper's.
-    let print = Print::of(&config.tables);
-    if print != Print::of(&Tables::default()) {
-        shape.push_str(&format!(" lists {:08x}", print.digest()));
+    if Print::of(&config.tables) != Print::of(&Tables::default()) {
+        shape.push_str(&format!(" seen by {}", config.tables.words()));
     }
     shape
 }

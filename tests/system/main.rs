@@ -27,6 +27,7 @@ mod readme;
 mod repeat;
 mod resume;
 mod schedule;
+mod seen;
 mod soak;
 mod stages;
 mod study;

@@ -33,16 +33,6 @@ impl Print {
         Self::of_those(tables, &[1, 2])
     }
 
-    /// One number for all of it.
-    pub fn digest(&self) -> u32 {
-        let bytes: Vec<u8> = self
-            .0
-            .iter()
-            .flat_map(|number| number.to_le_bytes())
-            .collect();
-        hash(&bytes)
-    }
-
     /// Of the lists of these numbers.
     fn of_those(tables: &Tables, those: &[u64]) -> Self {
         let mut listed = Vec::with_capacity(LISTED);

@@ -228,6 +228,25 @@ impl Table {
         reflection
     }
 
+    /// The list in a line: names, and what is otherwise than usual.
+    pub fn words(&self) -> String {
+        let word = |entry: &Entry| {
+            let mut word = entry.term.name.to_owned();
+            let mut tell = |name: &str, value: Option<f32>| {
+                if let Some(value) = value {
+                    word.push_str(&format!(" {name} {value}"));
+                }
+            };
+            tell("scale", (entry.scale != 1.0).then_some(entry.scale));
+            tell("noise", (entry.noise != 0.0).then_some(entry.noise));
+            tell("clip", entry.clip);
+            tell("past", (entry.past > 0).then_some(entry.past as f32));
+            word
+        };
+        let words: Vec<String> = self.entries.iter().map(word).collect();
+        words.join(", ")
+    }
+
     /// The same list without noise of its own.
     #[must_use]
     pub fn exact(&self) -> Self {

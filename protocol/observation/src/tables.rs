@@ -1,6 +1,6 @@
 //! The lists of a run together, and every width that follows from them.
 
-use crate::config::ObservationConfig;
+use crate::config::{ACTOR, ObservationConfig};
 use crate::table::{Reflection, Table};
 use crate::terms::{ACTOR, PAPER_ACTOR, PAPER_DISCRIMINATOR};
 use std::ops::Range;
@@ -169,6 +169,23 @@ impl Tables {
             critic: self.critic.as_ref().map(critic),
             ..self.clone()
         }
+    }
+
+    /// All lists in a line.
+    pub fn words(&self) -> String {
+        let critic = match &self.critic {
+            None => ACTOR.to_owned(),
+            Some(Critic {
+                sees_actor: true,
+                own,
+            }) => format!("{ACTOR}, {}", own.words()),
+            Some(Critic { own, .. }) => own.words(),
+        };
+        format!(
+            "actor [{}] critic [{critic}] discriminator [{}]",
+            self.actor.words(),
+            self.discriminator.words()
+        )
     }
 
     /// Whether the actor's list is the paper's, as that of a policy without a list is.

@@ -107,6 +107,11 @@ fn terms_in_another_order_are_the_same_numbers_elsewhere() {
 }
 
 #[test]
+fn a_list_is_told_in_words() {
+    assert_eq!(table().words(), "height past 2, command scale 2 clip 0.3");
+}
+
+#[test]
 fn the_papers_lists_are_written_by_one_function_each() {
     let writers = |names: &[&str]| Table::plain(names.iter().copied()).writers.len();
     assert_eq!(writers(&crate::terms::PAPER_ACTOR), 1);

@@ -79,3 +79,15 @@ fn noise_of_its_own_can_be_left_out() {
     let noise = |tables: &Tables| tables.actor.entries()[3].noise;
     assert_eq!((noise(&noisy), noise(&noisy.exact())), (0.1, 0.0));
 }
+
+#[test]
+fn all_lists_are_told_in_words() {
+    let lists = tables(
+        "[actor]\nterms = ['gravity']\npast = 1\n[critic]\nterms = ['actor', 'friction']\n\
+         [discriminator]\nterms = ['height']",
+    );
+    assert_eq!(
+        lists.words(),
+        "actor [gravity past 1] critic [actor, friction] discriminator [height]"
+    );
+}
