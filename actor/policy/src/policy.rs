@@ -170,12 +170,10 @@ impl Policy {
         let inputs = self.shape.inputs;
         let count = observations.len() / inputs;
         let [mut from, mut to] = self.buffers.each_mut();
-        normalise(
-            observations,
-            &self.mean,
-            &self.inverse_deviation,
-            self.clip,
-            from,
+        let (mean, inverse) = (&self.mean, &self.inverse_deviation);
+        self.arch.dispatch(
+            #[inline(always)]
+            || normalise(observations, mean, inverse, self.clip, from),
         );
         let mut stride = inputs;
         for layer in &self.layers {
@@ -197,7 +195,8 @@ impl Policy {
     }
 }
 
-/// clip((o − mean)·inverse deviation, ± `clip`) for rows `[n][inputs]`.
+/// clip((o − mean)·inverse deviation, ± `clip`) for rows `[n][inputs]`; what is no number stays none.
+#[inline(always)]
 fn normalise(
     observations: &[f32],
     mean: &[f32],
@@ -206,11 +205,15 @@ fn normalise(
     out: &mut [f32],
 ) {
     let inputs = mean.len();
+    let inverse_deviation = &inverse_deviation[..inputs];
     let rows = observations.chunks_exact(inputs);
     for (row, out) in rows.zip(out.chunks_exact_mut(inputs)) {
-        let scaling = mean.iter().zip(inverse_deviation);
-        for ((out, x), (mean, inverse)) in out.iter_mut().zip(row).zip(scaling) {
-            *out = ((x - mean) * inverse).clamp(-clip, clip);
+        // By index over slices of one length, and not by `clamp`, which asks whether its limits are in order: so that
+        // vectors do many numbers at a time.
+        for i in 0..inputs {
+            let scaled = (row[i] - mean[i]) * inverse_deviation[i];
+            let scaled = if scaled < -clip { -clip } else { scaled };
+            out[i] = if scaled > clip { clip } else { scaled };
         }
     }
 }
