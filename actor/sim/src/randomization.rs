@@ -287,7 +287,7 @@ impl Table {
     /// As the rows and the lists say.
     pub(crate) fn of(rows: RandomizationConfig, tables: &Tables) -> Self {
         let critic = tables.critic.as_ref().map(|critic| &critic.own);
-        let exact = RandomizationConfig::none();
+        let exact = RandomizationConfig::default();
         Self {
             noise: SensorNoise::of(&rows, &tables.actor),
             critic_noise: critic.map_or_else(SensorNoise::none, |own| SensorNoise::of(&exact, own)),

@@ -84,6 +84,7 @@ pub fn resolve(config: &mut Config) -> Result<Resolved> {
         return Err(config
             .refuse(
                 "discriminator",
+                "command_blur",
                 "command_blur needs the velocities that a command asks for: name linear_velocity and angular_velocity in \
                  observation.discriminator.terms, without scale or clip, or leave command_blur out",
             )

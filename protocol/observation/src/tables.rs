@@ -1,6 +1,5 @@
 //! The lists of a run together, and every width that follows from them.
 
-use crate::config::{ACTOR, ObservationConfig};
 use crate::table::{Reflection, Table};
 use crate::terms::{ACTOR, PAPER_ACTOR, PAPER_DISCRIMINATOR};
 use std::ops::Range;

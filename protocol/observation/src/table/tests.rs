@@ -114,9 +114,9 @@ fn a_list_is_told_in_words() {
 #[test]
 fn the_papers_lists_are_written_by_one_function_each() {
     let writers = |names: &[&str]| Table::plain(names.iter().copied()).writers.len();
-    assert_eq!(writers(&crate::terms::PAPER_ACTOR), 1);
-    assert_eq!(writers(&crate::terms::PAPER_DISCRIMINATOR), 1);
-    let longer = [&crate::terms::PAPER_DISCRIMINATOR[..], &["key_bodies"]].concat();
+    assert_eq!(writers(&terms::PAPER_ACTOR), 1);
+    assert_eq!(writers(&terms::PAPER_DISCRIMINATOR), 1);
+    let longer = [&terms::PAPER_DISCRIMINATOR[..], &["key_bodies"]].concat();
     assert_eq!(writers(&longer), 2);
     assert_eq!(writers(&["command", "height"]), 2);
 }
