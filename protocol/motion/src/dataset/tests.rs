@@ -241,8 +241,8 @@ fn clips_are_seen_as_a_list_says_and_obey_what_they_obeyed() {
     let mut rngs = [Pcg64Mcg::seed_from_u64(3), Pcg64Mcg::seed_from_u64(3)];
     let (mut a, mut b) = ([0.0; 2 * FEATURES], [0.0; 2 * 16]);
     for _ in 0..20 {
-        let command = paper.sample_window(&mut rngs[0], &mut a);
-        assert_eq!(other.sample_window(&mut rngs[1], &mut b), command);
+        let command = paper.sample_window(&mut rngs[0], 1, &mut a);
+        assert_eq!(other.sample_window(&mut rngs[1], 1, &mut b), command);
         // The same frames: the height is first in one and last in the other.
         assert_eq!([a[0], a[FEATURES]], [b[15], b[31]]);
     }

@@ -21,7 +21,7 @@ fn config() -> LearningConfig {
     config.ppo.gamma = 0.0;
     config.ppo.mirrored_share = 0.0.into();
     config.ppo.learning_rate = 3e-3;
-    config.ppo.schedule = RateSchedule::Fixed;
+    config.ppo.schedule = crate::config::RateSchedule::Fixed;
     config
 }
 
