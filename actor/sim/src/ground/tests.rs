@@ -103,7 +103,7 @@ fn robots_begin_over_the_ground_and_stand_on_it_in_both_engines() {
             places.push(state.position.x);
         }
         assert!(places.windows(2).all(|pair| pair[0] != pair[1]));
-        let mut rows = StepRows::filled(fleet.len(), 0.0);
+        let mut rows = StepRows::of(&fleet, 0.0);
         for _ in 0..15 {
             fleet.step(&vec![0.0; fleet.len() * ACTION], &mut rows.out());
         }
@@ -127,7 +127,7 @@ fn robots_begin_over_the_ground_and_stand_on_it_in_both_engines() {
 fn a_fleet_on_hills_goes_on_bit_by_bit() {
     for physics in [Physics::Rapier, Physics::Batched] {
         let mut one = fleet(physics, ROUGH);
-        let mut rows = StepRows::filled(one.len(), 0.0);
+        let mut rows = StepRows::of(&one, 0.0);
         let actions = vec![0.1; one.len() * ACTION];
         for _ in 0..5 {
             one.step(&actions, &mut rows.out());

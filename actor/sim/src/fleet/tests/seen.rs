@@ -1,6 +1,7 @@
 //! Lists other than the paper's: past frames, a critic of its own, what is measured beside.
 
 use super::*;
+use crate::randomization::{Push, Row};
 use ::observation::{ObservationConfig, Tables};
 
 /// The paper's terms in another order, half of them remembered, and a critic that knows more.
@@ -50,10 +51,11 @@ fn past_frames_are_those_of_the_steps_before_and_of_no_episode_before() {
 }
 
 fn remembers(physics: Physics) {
-    let (task, _) = eventful_in(physics);
+    let (task, _) = eventful();
     let none = RandomizationConfig::default();
-    let mut paper = fleet(&task, &none, 3, 7);
-    let mut fleet = seen(LISTS, &task, &none, 3, 7);
+    let starts = walking_frames();
+    let mut paper = Fleet::new(physics, &task, &none, starts, 3, 7).unwrap();
+    let mut fleet = seen_in(physics, LISTS, &task, &none, [3, 7]);
     let width = fleet.tables().actor.width();
     assert_eq!(width, 3 * (JOINTS + 3 + 1 + JOINTS) + 3);
     let now = |fleet: &Fleet, robot: usize| fleet.state(robot).joint_velocities;
@@ -92,13 +94,13 @@ fn remembers(physics: Physics) {
 #[test]
 fn a_restored_fleet_remembers() {
     for physics in ENGINES {
-        let (task, table) = eventful_in(physics);
-        let mut original = seen(LISTS, &task, &table, 2, 5);
+        let (task, table) = eventful();
+        let mut original = seen_in(physics, LISTS, &task, &table, [2, 5]);
         let mut actions = Actions::new(2);
         for _ in 0..13 {
             step(&mut original, &actions.draw(2, 1.0));
         }
-        let mut restored = seen(LISTS, &task, &table, 2, 99);
+        let mut restored = seen_in(physics, LISTS, &task, &table, [2, 99]);
         restored.restore(&original.save()).unwrap();
         for t in 0..40 {
             let asked = actions.draw(2, 1.0);
@@ -111,7 +113,7 @@ fn a_restored_fleet_remembers() {
             );
         }
         // Rows of other lists do not fit.
-        let mut paper = fleet(&task, &table, 2, 5);
+        let mut paper = Fleet::new(physics, &task, &table, walking_frames(), 2, 5).unwrap();
         assert!(paper.restore(&original.save()).is_err());
     }
 }
@@ -119,12 +121,14 @@ fn a_restored_fleet_remembers() {
 #[test]
 fn the_critic_knows_what_is_true() {
     let table = RandomizationConfig {
-        friction_range: [0.6, 0.6],
-        mass_range: [0.4, 0.4],
-        com_range: [0.05, 0.05],
-        impulse_range: [0.5, 0.5],
-        impulse_seconds: [0.06, 0.06], // every third step
-        ..RandomizationConfig::default()
+        friction: Some(Row { range: [0.6; 2] }),
+        mass_variation: Some(Row { range: [0.4; 2] }),
+        com_offset: Some(Row { range: [0.05; 2] }),
+        impulse: Some(Push {
+            range: [0.5; 2],
+            seconds: [0.06; 2], // every third step
+        }),
+        ..RandomizationConfig::table_one()
     };
     let mut fleet = seen(LISTS, &TaskConfig::default(), &table, 1, 3);
     let begun = fleet.critic_observations().to_vec();
@@ -182,7 +186,7 @@ fn what_is_measured_beside_is_of_the_step_and_its_command() {
         ..TaskConfig::default()
     };
     let blind = "[actor]\nterms = ['joint_velocity']\n[discriminator]\nterms = ['key_bodies']";
-    let mut fleet = seen(blind, &task, &RandomizationConfig::default(), 1, 3);
+    let mut fleet = seen(blind, &task, &RandomizationConfig::table_one(), 1, 3);
     let command = fleet.command(0);
     let out = step(&mut fleet, &[0.1; ACTION]);
     assert_ne!(fleet.command(0), command);
