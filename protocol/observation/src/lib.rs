@@ -31,5 +31,5 @@ pub use print::Print;
 pub use scene::{Scene, Truth};
 pub use table::{Entry, Reflection, Table};
 pub use tables::{Critic, Place, Places, Tables, Widths};
-pub use term::{Kind, Term};
+pub use term::{Kind, Term, Writer};
 pub use terms::TERMS;

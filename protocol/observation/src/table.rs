@@ -3,7 +3,7 @@
 //! Names are looked up here, once; what runs at every step of every robot is a few calls of functions with a range each.
 
 use crate::scene::Scene;
-use crate::term::Term;
+use crate::term::{Term, Writer};
 use crate::terms::{self, TOGETHER};
 use std::ops::Range;
 
@@ -63,7 +63,7 @@ pub struct Table {
     /// Where each entry's numbers are in a row; the newest come first.
     rows: Vec<Range<usize>>,
     /// What writes a frame: a function, and which numbers.
-    writers: Vec<(fn(&Scene<'_>, &mut [f32]), Range<usize>)>,
+    writers: Vec<(Writer, Range<usize>)>,
     /// What is cut and scaled of a frame: which numbers, ± what, by what.
     adjustments: Vec<(Range<usize>, f32, f32)>,
     width: usize,
@@ -259,10 +259,7 @@ impl Table {
 }
 
 /// What writes a frame: terms that one function writes together, wherever they follow each other, and else their own.
-fn writers(
-    entries: &[Entry],
-    frames: &[Range<usize>],
-) -> Vec<(fn(&Scene<'_>, &mut [f32]), Range<usize>)> {
+fn writers(entries: &[Entry], frames: &[Range<usize>]) -> Vec<(Writer, Range<usize>)> {
     let mut writers = Vec::new();
     let mut next = 0;
     while next < entries.len() {

@@ -2,6 +2,9 @@
 
 use crate::scene::Scene;
 
+/// Writes what is seen of a scene, as many numbers as there is room for.
+pub type Writer = fn(&Scene<'_>, &mut [f32]);
+
 /// A named part of an observation.
 #[derive(Debug)]
 pub struct Term {
@@ -10,7 +13,7 @@ pub struct Term {
     /// A name for each of its numbers; there are as many numbers as names.
     pub labels: &'static [&'static str],
     /// Writes its numbers, in its unit, of a scene.
-    pub write: fn(&Scene<'_>, &mut [f32]),
+    pub write: Writer,
     /// Where number `i` of the left–right reflected term comes from within the term, and its sign.
     pub mirror: fn(usize) -> (usize, f32),
     /// What it measures.

@@ -7,7 +7,7 @@ mod task;
 mod truth;
 
 use crate::scene::Scene;
-use crate::term::Term;
+use crate::term::{Term, Writer};
 
 /// Every term that there is.
 pub static TERMS: [&Term; 16] = [
@@ -31,7 +31,7 @@ pub static TERMS: [&Term; 16] = [
 
 /// Sequences of terms that one function writes at once: the paper's two lists. They write what the terms' own functions
 /// would, and faster.
-pub(crate) static TOGETHER: [(&[&str], fn(&Scene<'_>, &mut [f32])); 2] = [
+pub(crate) static TOGETHER: [(&[&str], Writer); 2] = [
     (&PAPER_ACTOR, |scene, out| {
         let Scene { state, .. } = scene;
         g1::observation::policy_observation(state, scene.command, scene.previous_action, out);

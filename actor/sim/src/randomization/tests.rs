@@ -122,7 +122,7 @@ fn rows_of_the_sensors() {
         ("joint_velocity_noise", 36..59, 1.5),
     ];
     let mut rng = rng();
-    let seen = observation::Tables::default().actor;
+    let seen = Tables::default().actor;
     let mut still = [0.25; g1::OBSERVATION];
     SensorNoise::of(&none, &seen).blur(&mut still, &mut rng);
     assert_eq!(still, [0.25; g1::OBSERVATION]);
