@@ -4,60 +4,26 @@
 //! told here once, for one robot, while the fleet only lines robots up. The robot itself is in its
 //! engine, beside all others ([`Bodies`]).
 
+mod setting;
+
+pub(crate) use setting::Setting;
+
 use crate::actuator;
 use crate::command::Occasion;
 use crate::feet::Footing;
-use crate::ground::Ground;
 use crate::moment::{self, Moment};
 use crate::physics::Bodies;
 use crate::randomization::{SensorNoise, Table};
-use crate::start::{self, Pools, Starts};
-use crate::task::TaskConfig;
+use crate::start;
 use crate::termination::stray::Astray;
 use crate::terms::Sums;
 use g1::{JOINTS, RobotState};
 use nalgebra::Vector3;
-use observation::{Scene, Tables, Truth};
+use observation::{Scene, Truth};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
 use vocabulary::Cause;
-
-/// What all environments of a fleet have in common.
-pub(crate) struct Setting {
-    pub(crate) task: TaskConfig,
-    pub(crate) table: Table,
-    /// The table of robots that it leaves alone: every row off.
-    pub(crate) plain: Table,
-    pub(crate) starts: Starts,
-    /// The starts by kind of command.
-    pub(crate) pools: Pools,
-    /// What is seen of a robot.
-    pub(crate) tables: Tables,
-    /// Robots of the fleet.
-    pub(crate) robots: usize,
-    /// Hills and bumps, where the floor is not level.
-    pub(crate) ground: Option<Ground>,
-}
-
-impl Setting {
-    /// A state of an engine as it is told.
-    fn told(&self, state: RobotState) -> RobotState {
-        match &self.ground {
-            None => state,
-            Some(ground) => ground.level(state),
-        }
-    }
-
-    /// Table I as it counts for a robot.
-    pub(crate) fn table(&self, robot: usize) -> &Table {
-        if self.table.rows.spares(robot) {
-            &self.plain
-        } else {
-            &self.table
-        }
-    }
-}
 
 /// What is seen of one environment: its rows, which hold what was seen before.
 pub(crate) struct Rows<'a> {

@@ -3,24 +3,21 @@
 //! Separate because the layout of the slices is a contract with rollouts; what happens to one robot
 //! is told in `env`.
 
+mod make;
 mod out;
 mod saved;
 
 pub use out::StepOut;
 
-use crate::actuator::Gains;
 use crate::env::{Environment, Rows, Setting};
-use crate::error::SimError;
 use crate::physics::{Bodies, Exertion, Physics};
 use crate::randomization::{RandomizationConfig, Table};
-use crate::start::Pools;
-use crate::start::Starts;
 use crate::task::TaskConfig;
 use crate::terms::Sums;
 use g1::{ACTION, RobotState};
 use nalgebra::Vector3;
 use observation::{Scene, Tables};
-use vocabulary::{Cause, RUNNING, Section};
+use vocabulary::{Cause, RUNNING};
 
 /// Environments stepped together. Same seed, same bits: an environment's future depends on the
 /// seed, its index and its actions only.
@@ -65,131 +62,7 @@ pub struct LastStep {
     pub exertion: Exertion,
 }
 
-/// What a fleet is of, whatever it does.
-struct Make {
-    physics: Physics,
-    gains: Gains,
-    tables: Tables,
-}
-
 impl Fleet {
-    /// Environments at the start of their first episodes, seen as in the paper.
-    pub fn new(
-        physics: Physics,
-        task: &TaskConfig,
-        randomization: &RandomizationConfig,
-        starts: Starts,
-        environments: usize,
-        seed: u64,
-    ) -> Result<Self, SimError> {
-        let gains = Gains::of_the_robot();
-        Self::with_gains(
-            physics,
-            task,
-            randomization,
-            starts,
-            environments,
-            seed,
-            gains,
-        )
-    }
-
-    /// The same, seen as lists say.
-    pub fn seen_by(
-        tables: &Tables,
-        physics: Physics,
-        task: &TaskConfig,
-        randomization: &RandomizationConfig,
-        starts: Starts,
-        environments: usize,
-        seed: u64,
-    ) -> Result<Self, SimError> {
-        let make = Make {
-            physics,
-            gains: Gains::of_the_robot(),
-            tables: tables.clone(),
-        };
-        Self::build(make, task, randomization, starts, environments, seed)
-    }
-
-    /// With motors of other gains than the robot's.
-    pub fn with_gains(
-        physics: Physics,
-        task: &TaskConfig,
-        randomization: &RandomizationConfig,
-        starts: Starts,
-        environments: usize,
-        seed: u64,
-        gains: Gains,
-    ) -> Result<Self, SimError> {
-        let make = Make {
-            physics,
-            gains,
-            tables: Tables::default(),
-        };
-        Self::build(make, task, randomization, starts, environments, seed)
-    }
-
-    fn build(
-        make: Make,
-        task: &TaskConfig,
-        randomization: &RandomizationConfig,
-        starts: Starts,
-        environments: usize,
-        seed: u64,
-    ) -> Result<Self, SimError> {
-        let Make {
-            physics,
-            gains,
-            tables,
-        } = make;
-        task.validate()?;
-        randomization.validate()?;
-        starts.validate()?;
-        vocabulary::invalid::require(
-            environments > 0,
-            "environments",
-            environments,
-            "give at least 1",
-        )?;
-        let setting = Setting {
-            task: task.clone(),
-            table: Table::of(randomization.clone(), &tables),
-            plain: Table::of(RandomizationConfig::default(), &tables.exact()),
-            pools: Pools::of(&starts),
-            starts,
-            tables,
-            robots: environments,
-            ground: task.ground.map(|ground| ground.lay(seed)),
-        };
-        let widths = setting.tables.widths();
-        let own = setting.tables.critic.as_ref().map(|critic| &critic.own);
-        let frame = own.map_or(0, observation::Table::frame_width);
-        let frame = frame.max(setting.tables.actor.frame_width());
-        let mut bodies = Bodies::new(physics, &gains, environments, setting.ground.as_ref());
-        let mut fleet = Self {
-            environments: (0..environments)
-                .map(|index| Environment::new(&setting, &mut bodies, seed, index))
-                .collect(),
-            setting,
-            physics,
-            bodies,
-            acted: vec![true; environments],
-            observations: vec![0.0; environments * widths.observation],
-            critic: vec![0.0; environments * widths.critic],
-            features: vec![0.0; environments * widths.features],
-            frame: vec![0.0; frame],
-            last: Vec::new(),
-            sums: Sums::default(),
-            faults: 0,
-        };
-        fleet.forget_last_steps();
-        for index in 0..environments {
-            fleet.look(index);
-        }
-        Ok(fleet)
-    }
-
     /// Number of environments N.
     pub fn len(&self) -> usize {
         self.environments.len()

@@ -40,10 +40,13 @@ impl Key {
     }
 }
 
-/// How many keys there are, by `--count`.
+/// How many keys there are besides lists, by `--count`.
 pub fn count(keys: &[Key]) -> usize {
-    let counted: std::collections::BTreeSet<&str> =
-        keys.iter().map(|key| key.counted.as_str()).collect();
+    let counted: std::collections::BTreeSet<&str> = keys
+        .iter()
+        .filter(|key| !key.list)
+        .map(|key| key.counted.as_str())
+        .collect();
     counted.len()
 }
 

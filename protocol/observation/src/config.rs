@@ -26,6 +26,7 @@ const MOST_PAST: usize = 32;
 
 /// The `[observation]` section. The defaults are the paper's lists (Section III-A).
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(extend("terms" = true))]
 pub struct ObservationConfig {
     /// What the policy sees, with the noise of Table I.
     pub actor: SeenList,
@@ -39,7 +40,7 @@ pub struct ObservationConfig {
 /// Terms that policy or critic see, in order.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SeenList {
-    /// Their names.
+    /// Names of its terms.
     pub terms: Vec<String>,
     /// Frames before the present one that are seen of every term. Default 0. At an episode's start the first frame
     /// stands for those before it.
@@ -70,7 +71,7 @@ pub struct SeenTerm {
 /// Terms that the discriminator sees, in order: such as reference motion has too.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct JudgedList {
-    /// Their names.
+    /// Names of its terms.
     pub terms: Vec<String>,
     /// What is otherwise of single terms, by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]

@@ -9,13 +9,15 @@ mod seen;
 mod table;
 
 use super::*;
+use crate::actuator::Gains;
 use crate::command::CommandConfig;
+use crate::error::SimError;
 use crate::model::Variation;
 use crate::randomization::Push;
 use crate::reward::RewardConfig;
 use crate::reward::track::Track;
 use crate::rows::StepRows;
-use crate::start::StartConfig;
+use crate::start::{StartConfig, Starts};
 use crate::termination::TerminationConfig;
 use crate::termination::fall::FallConfig;
 use crate::termination::stray::StrayConfig;
@@ -23,6 +25,7 @@ use crate::termination::time_out::TimeOutConfig;
 use g1::{FEATURES, JOINTS, OBSERVATION, observation};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use vocabulary::Section;
 
 const ENGINES: [Physics; 2] = [Physics::Rapier, Physics::Batched];
 
