@@ -56,7 +56,7 @@ fn local_sh_trains_the_smoke_preset_to_its_end() {
         "[discriminator]",
         "[scheduler]",
         "[motion",
-        "[task]",
+        "[task.reward.track]",
     ] {
         assert!(
             config.contains(section),

@@ -4,7 +4,7 @@
 //! reused, so that an iteration allocates nothing here.
 
 use crate::LearningError;
-use crate::robot::Place;
+use crate::columns::{Place, Widths};
 use vocabulary::Cause;
 
 /// One rollout's size.
@@ -21,21 +21,6 @@ impl Segment {
     pub fn rows(&self) -> usize {
         self.steps * self.environments
     }
-}
-
-/// Numbers of a row of each kind; they follow from what is seen of the robot.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Widths {
-    /// What the policy sees.
-    pub observation: usize,
-    /// All that the critic sees; 0 where it sees what the policy does.
-    pub critic: usize,
-    /// An action.
-    pub action: usize,
-    /// What the discriminator sees of one state.
-    pub features: usize,
-    /// What is measured beside.
-    pub measured: usize,
 }
 
 macro_rules! fields {

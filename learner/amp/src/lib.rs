@@ -28,6 +28,7 @@
 
 pub mod batch;
 pub mod blend;
+mod columns;
 pub mod config;
 pub mod discrimination;
 mod error;
@@ -47,12 +48,13 @@ pub mod style;
 pub mod surrogate;
 pub mod window;
 
-pub use batch::{Batch, Segment, SegmentMut, Widths};
+pub use batch::{Batch, Segment, SegmentMut};
+pub use columns::{Feature, FeatureKind, Place, Widths};
 pub use config::{DiscriminatorConfig, ExplorationConfig, LearningConfig, PolicyConfig, PpoConfig};
 pub use error::LearningError;
 pub use learning::{Clock, Learning};
 pub use report::{IterationReport, Seconds};
-pub use robot::{Feature, FeatureKind, JointGroup, Mirror, Place, Robot};
+pub use robot::{JointGroup, Mirror, Robot};
 pub use saturation::{Saturation, Scores};
 
 /// Numbers of a command: m/s forward, m/s aside, rad/s (III-A).

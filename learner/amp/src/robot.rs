@@ -2,9 +2,8 @@
 //!
 //! The robot's own crate is not imported: learning needs a reflection and two groupings, whatever walks.
 
-use crate::batch::Widths;
+use crate::columns::{Feature, Place, Widths};
 use crate::{COMMAND, DiscriminatorConfig, LearningError};
-use std::ops::Range;
 
 /// A reflection as a permutation with signs: `out[i] = sign[i] · in[index[i]]`.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,41 +12,6 @@ pub struct Mirror {
     pub index: Vec<usize>,
     /// +1 or −1.
     pub sign: Vec<f32>,
-}
-
-/// Where a batch's rows hold something.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// Numbers of what the policy saw.
-    Observation(Range<usize>),
-    /// Numbers of what the discriminator sees of the state after the step.
-    Features(Range<usize>),
-    /// Numbers of what is measured beside.
-    Measured(Range<usize>),
-}
-
-/// A number of what the discriminator sees of a state.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Feature {
-    /// What it measures.
-    pub kind: FeatureKind,
-    /// What a quantity in its unit was multiplied by.
-    pub scale: f32,
-}
-
-/// What a number of the discriminator's observation measures; each kind has its own least deviation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FeatureKind {
-    /// m: the pelvis' height, places of other bodies
-    Height,
-    /// m/s
-    LinearVelocity,
-    /// rad/s
-    AngularVelocity,
-    /// rad: joints, and where down is
-    JointPosition,
-    /// rad/s
-    JointVelocity,
 }
 
 /// Where a joint is; each group explores with its own width.
@@ -171,6 +135,7 @@ impl Robot {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::columns::FeatureKind;
     use crate::config::floor;
 
     /// Numbers of the rows of tests.

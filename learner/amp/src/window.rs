@@ -7,8 +7,9 @@
 //! cut itself would tell the two apart.
 
 use crate::batch::Batch;
+use crate::columns::Place;
 use crate::config::DiscriminatorConfig;
-use crate::robot::{Place, Robot};
+use crate::robot::Robot;
 
 /// What windows are cut to.
 #[derive(Clone, Debug)]

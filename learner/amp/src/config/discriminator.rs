@@ -2,7 +2,7 @@
 
 use super::Check;
 use crate::COMMAND;
-use crate::robot::{Feature, FeatureKind};
+use crate::columns::{Feature, FeatureKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, Section};

@@ -1,8 +1,8 @@
 //! The discriminator on cases whose answer is known.
 
 use super::*;
+use crate::columns::FeatureKind;
 use crate::config::LearningConfig;
-use crate::robot::FeatureKind;
 use crate::robot::tests::{FEATURES, feature, simple};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
