@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use amp::{IterationReport, LearningConfig};
+use amp::{DiscriminatorConfig, IterationReport, LearningConfig};
 use ampco::ScheduleConfig;
 use anyhow::{Context, Result};
 use motion::{Dataset, MotionConfig};
@@ -46,14 +46,19 @@ impl LearnerConfig {
         }
         let observation: ObservationConfig = config.section()?;
         let tables = observation.tables().context("section [observation]")?;
+        let fleet: FleetConfig = config.section()?;
+        let discriminator: DiscriminatorConfig = config.section()?;
+        if let Some(lack) = never_whole(&discriminator, fleet.steps) {
+            warn!("{lack}");
+        }
         Ok(Self {
             run: config.section()?,
-            fleet: config.section()?,
+            fleet,
             learning: LearningConfig {
                 policy: config.section()?,
                 exploration: config.section()?,
                 ppo: config.section()?,
-                discriminator: config.section()?,
+                discriminator,
             },
             schedule: config.section()?,
             experts: experts.seen_as(&tables.discriminator),
@@ -94,6 +99,19 @@ impl LearnerConfig {
     }
 }
 
+/// What is to be said of windows that no rollout is long enough for: a window ends where its rollout began.
+fn never_whole(discriminator: &DiscriminatorConfig, steps: usize) -> Option<String> {
+    let (frames, spacing) = (discriminator.frames, discriminator.spacing);
+    let span = (frames - 1) * spacing;
+    (span > steps).then(|| {
+        format!(
+            "the discriminator never sees a whole window: {frames} states, {spacing} steps apart \
+             (discriminator.frames, spacing), are {span} steps, and a rollout has {steps} (fleet.steps); the oldest \
+             state of the rollout stands for those before it"
+        )
+    })
+}
+
 /// Samples at which the last ramp of `[task]` and `[randomization]` arrives; 0 where there is none. The learner knows
 /// neither section, but the way a ramp is written: it ends with the second of its `samples`.
 fn settled(config: &Config) -> f64 {
@@ -119,6 +137,25 @@ fn settled(config: &Config) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn windows_longer_than_a_rollout_are_told() {
+        let of = |frames, spacing, steps| {
+            let config = DiscriminatorConfig {
+                frames,
+                spacing,
+                ..DiscriminatorConfig::default()
+            };
+            never_whole(&config, steps)
+        };
+        assert_eq!(of(2, 1, 1), None);
+        assert_eq!(of(6, 3, 15), None);
+        let said = of(6, 3, 14).unwrap();
+        assert!(
+            said.contains("15 steps") && said.contains("has 14"),
+            "{said}"
+        );
+    }
 
     #[test]
     fn a_task_has_settled_when_its_last_schedule_arrives() {

@@ -121,10 +121,13 @@ impl Train {
             let tables = observation.tables().context("section [observation]")?;
             let seen = observation::Print::of_actor(&kept.tables);
             if let Some(difference) = seen.difference(&observation::Print::of_actor(&tables)) {
+                // A shipped policy has the first, a run's checkpoint the second.
+                let has = ["config.toml", run::checkpoint::CONFIG].map(|name| kept.path.join(name));
+                let has = has.iter().find(|path| path.exists()).unwrap_or(&kept.path);
                 return Err(usage(format!(
                     "--from {from}: this run's policy is to see something else than that one does: {difference}; set \
                      observation.actor as it was, `{}` has it",
-                    kept.path.join("config.toml").display()
+                    has.display()
                 )));
             }
             let other_critic = observation::Print::of_critic(&kept.tables)

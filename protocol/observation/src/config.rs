@@ -24,6 +24,9 @@ use vocabulary::{Checked, Invalid, Section, invalid};
 /// Most past frames of a term: two thirds of a second.
 const MOST_PAST: usize = 32;
 
+const TWICE: &str = "it is in the list already: name it once";
+const UNLISTED: &str = "name it in terms, or leave its table out";
+
 /// The `[observation]` section. The defaults are the paper's lists (Section III-A).
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[schemars(extend("terms" = true))]
@@ -175,7 +178,7 @@ impl ObservationConfig {
     /// # Errors
     /// The first value that cannot be used.
     pub fn tables(&self) -> Result<Tables, Invalid> {
-        let actor = at("actor", table(&self.actor, |_| None))?;
+        let actor = at("actor", table(&self.actor, 0, |_| None))?;
         let critic = at("critic", self.critic())?;
         let judged = SeenList {
             terms: self.discriminator.terms.clone(),
@@ -189,7 +192,7 @@ impl ObservationConfig {
         };
         let discriminator = at(
             "discriminator",
-            table(&judged, |term| {
+            table(&judged, 0, |term| {
                 let lack = "reference motion has no such thing: use terms of the robot's state";
                 (!term.is_of_motion()).then_some(lack)
             }),
@@ -208,13 +211,20 @@ impl ObservationConfig {
             "put \"actor\" first, or leave it out",
         )?;
         let sees_actor = place.is_some();
+        if let Some(again) = list.terms.iter().skip(1).position(|name| name == ACTOR) {
+            let path = format!("terms[{}]", again + 1);
+            return Err(Invalid::new(path, ACTOR, TWICE));
+        }
         let own = SeenList {
             terms: list.terms[usize::from(sees_actor)..].to_vec(),
             ..list.clone()
         };
         if sees_actor && own.terms.is_empty() {
+            if let Some(name) = own.term.keys().next() {
+                return Err(Invalid::new(format!("term.{name}"), name, UNLISTED));
+            }
             require(
-                own.past == 0 && own.term.is_empty(),
+                own.past == 0,
                 "past",
                 own.past,
                 "it is of terms of the critic's own, of which there are none: give [observation.actor] past frames, or \
@@ -222,14 +232,16 @@ impl ObservationConfig {
             )?;
             return Ok(None);
         }
-        let own = table(&own, |_| None)?;
+        let own = table(&own, usize::from(sees_actor), |_| None)?;
         Ok(Some(Critic { sees_actor, own }))
     }
 }
 
-/// One list made ready; `refuse` says what is wrong with a term, if something is.
+/// One list made ready, whose first term is that many in the list as it is written; `refuse` says what is wrong with a
+/// term, if something is.
 fn table(
     list: &SeenList,
+    first: usize,
     refuse: impl Fn(&Term) -> Option<&'static str>,
 ) -> Result<Table, Invalid> {
     require(
@@ -241,14 +253,14 @@ fn table(
     past("past", list.past)?;
     let mut entries: Vec<Entry> = Vec::with_capacity(list.terms.len());
     for (i, name) in list.terms.iter().enumerate() {
-        let path = format!("terms[{i}]");
+        let path = format!("terms[{}]", first + i);
         let bad = |remedy: String| Invalid::new(path.clone(), name, remedy);
         let term = terms::named(name).ok_or_else(|| bad(format!("use one of {}", known())))?;
         if let Some(lack) = refuse(term) {
             return Err(bad(lack.to_owned()));
         }
         if entries.iter().any(|other| other.term.name == term.name) {
-            return Err(bad("it is in the list already: name it once".to_owned()));
+            return Err(bad(TWICE.to_owned()));
         }
         let given = list.term.get(name).copied().unwrap_or_default();
         at(&format!("term.{name}"), check(&given))?;
@@ -265,7 +277,7 @@ fn table(
             list.terms.contains(name),
             &format!("term.{name}"),
             name,
-            "name it in terms, or leave its table out",
+            UNLISTED,
         )?;
     }
     Ok(Table::of(entries))

@@ -93,10 +93,11 @@ const TABLE: &[(&str, Rule, &[&str])] = &[
         ],
     ),
     ("ppo", Free, &["threads"]),
+    ("discriminator", Fixed(SHAPE), &["frames", "hidden"]),
     (
         "discriminator",
-        Fixed(SHAPE),
-        &["frames", "spacing", "hidden"],
+        Fixed("the discriminator knows states that are so far apart"),
+        &["spacing"],
     ),
     ("discriminator", Present(SHAPE), &["command_blur"]),
     (

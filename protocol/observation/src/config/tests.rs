@@ -83,7 +83,21 @@ fn what_cannot_be_seen_is_refused_with_its_place_and_a_remedy() {
         ),
         ("[critic]\nterms = []", "critic.terms", "at least one"),
         ("[critic]\npast = 3", "critic.past", "observation.actor"),
-        ("[critic.term.height]\nscale = 2.0", "critic.past", "beside"),
+        (
+            "[critic.term.height]\nscale = 2.0",
+            "critic.term.height",
+            "name it in terms",
+        ),
+        (
+            "[critic]\nterms = ['actor', 'friction', 'actor']",
+            "critic.terms[2]",
+            "once",
+        ),
+        (
+            "[critic]\nterms = ['actor', 'friction', 'heigth']",
+            "critic.terms[2]",
+            "use one of",
+        ),
         (
             "[discriminator]\nterms = ['command']",
             "discriminator.terms[0]",
