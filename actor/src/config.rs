@@ -7,7 +7,7 @@ use motion::{Dataset, MotionConfig};
 use observation::{ObservationConfig, Tables};
 use protocol::{Lists, RolloutLayout};
 use run::{FleetConfig, Folder, RunConfig};
-use sim::{Physics, RandomizationConfig, Starts, TaskConfig};
+use sim::{Mechanics, RandomizationConfig, Starts, TaskConfig};
 use tracing::warn;
 
 /// The sections that an actor needs, read and checked.
@@ -16,8 +16,8 @@ pub struct ActorConfig {
     pub seed: u64,
     /// Size of this actor's rollouts.
     pub layout: RolloutLayout,
-    /// Which engine moves the robots.
-    pub physics: Physics,
+    /// Which engine moves the robots, and what may touch.
+    pub mechanics: Mechanics,
     /// What is seen of the robots.
     pub tables: Tables,
     /// Commands, rewards, ends of episodes.
@@ -57,7 +57,7 @@ impl ActorConfig {
                 steps: fleet.steps,
                 lists: Lists::from(&tables),
             },
-            physics: fleet.physics,
+            mechanics: fleet.mechanics(),
             tables,
             task: config.section()?,
             randomization: config.section()?,

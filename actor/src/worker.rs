@@ -47,7 +47,7 @@ impl Worker {
         let seed = mix(mix(config.seed, u64::from(index) + 1), header.version);
         let fleet = Fleet::seen_by(
             &config.tables,
-            config.physics,
+            config.mechanics,
             &config.task.at(header.samples as f64),
             &config.randomization.at(header.samples as f64),
             config.starts.clone(),
@@ -255,7 +255,7 @@ mod tests {
                 steps: 8,
                 lists: Lists::default(),
             },
-            physics: Physics::Rapier,
+            mechanics: Physics::Rapier.into(),
             tables: Tables::default(),
             task: TaskConfig {
                 start: StartConfig {

@@ -6,6 +6,7 @@
 use crate::lane::{Lane, afresh};
 use crate::spatial::{Inertia, Rotation, Spatial, Symmetric, Vec3};
 use crate::tree::{Hinge, POINTS, Tree};
+use g1::collision::CAPSULES;
 
 /// Where a body is.
 #[derive(Clone, Copy)]
@@ -90,6 +91,24 @@ impl<L: Lane> Frame<L> {
         for &point in &tree.order[first..end] {
             let at = Vec3::splat(token, tree.points[point]);
             points[point] = self.orientation.turn_add(at, self.position);
+        }
+    }
+
+    /// Where the ends of a body's capsule are, if it has one that meets others.
+    #[inline(always)]
+    pub(crate) fn span(
+        &self,
+        token: L::Token,
+        tree: &Tree<L::Scalar>,
+        body: usize,
+        capsules: &mut [[Vec3<L>; 2]; CAPSULES],
+    ) {
+        if let Some(capsule) = tree.capsule_of[body] {
+            for (to, at) in capsules[capsule].iter_mut().zip(tree.ends[capsule]) {
+                *to = self
+                    .orientation
+                    .turn_add(Vec3::splat(token, at), self.position);
+            }
         }
     }
 }

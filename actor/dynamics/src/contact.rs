@@ -1,4 +1,4 @@
-//! Contacts: points against the ground, soft along the normal, dry friction across it.
+//! Contacts: points against the ground, soft along the normal, dry friction across it; and the robot with itself.
 //!
 //! Separate because contact is a model of its own, with choices that mechanics does not make. Along
 //! the normal the point obeys φ̈ + b·φ̇ + k·φ = 0 softened by an impedance, as MuJoCo's `solref` and
@@ -7,6 +7,8 @@
 //! allows: a disk, not a pyramid, and without softness, so that a standing robot does not creep.
 //! Impulses come from projected Gauss–Seidel sweeps over the points, begun with those of the last step.
 
+mod normal;
+mod pairs;
 mod reach;
 mod relax;
 
@@ -21,14 +23,9 @@ use crate::tree::{
     BASE, CHAIN, DEGREES, LIMBS, POINT_TABLE, POINTS, SOLE_POINTS, SOLES, TRUNK, Tree,
 };
 use g1::JOINTS;
+use normal::normal;
+use pairs::Pairs;
 use reach::Reach;
-
-/// Time constant of the normal's return, s.
-const TIME_CONSTANT: f64 = 0.02;
-/// Impedance at the surface and from `WIDTH` on.
-const IMPEDANCE: [f64; 2] = [0.9, 0.95];
-/// Depth over which the impedance rises, m.
-const WIDTH: f64 = 0.001;
 
 /// A point that touches the ground in some lane.
 #[derive(Clone, Copy)]
@@ -57,6 +54,7 @@ pub(crate) struct Contacts<L> {
     of_limb: [(usize, usize); LIMBS],
     reach: Reach<L>,
     friction: L,
+    pairs: Pairs<L>,
     /// ζ of every degree (see [`factor`]): begins with what the other forces did and ends with the
     /// impulses in it.
     pub(crate) zeta: [L; DEGREES],
@@ -90,6 +88,7 @@ impl<L: Lane> Contacts<L> {
             of_limb: [(0, 0); LIMBS],
             reach: Reach::new(zero),
             friction: zero,
+            pairs: Pairs::none(zero),
             zeta: [zero; DEGREES],
         }
     }
@@ -101,7 +100,7 @@ impl<L: Lane> Contacts<L> {
         end - first
     }
 
-    /// Finds the points that touch, and how they move and yield.
+    /// Finds what touches, and how it moves and yields.
     #[inline(always)]
     pub(crate) fn find(
         &mut self,
@@ -122,6 +121,7 @@ impl<L: Lane> Contacts<L> {
             };
             self.of_limb[limb] = (first, count);
         }
+        self.pairs.find(touch, walk, factor);
     }
 
     #[expect(
@@ -227,12 +227,15 @@ pub(crate) fn solve<L: Lane>(groups: &mut [&mut Contacts<L>], sweeps: usize) {
                 relax::visit::<L, TRUNK, 5>(groups, limb, begin);
             }
         }
+        if !begin {
+            relax::visit_pairs(groups);
+        }
     }
 }
 
-/// The robot's tree, its points weighed.
-pub(crate) fn tree<T: Real>() -> Tree<T> {
-    Tree::weighed(weights(&Tree::weightless()))
+/// The robot's tree, its points weighed; its parts meet each other or pass through each other.
+pub(crate) fn tree<T: Real>(self_collision: bool) -> Tree<T> {
+    Tree::weighed(weights(&Tree::weightless()), self_collision)
 }
 
 /// Velocity per impulse at every point of the robot that stands, mean of the three directions, 1/kg:
@@ -276,24 +279,12 @@ impl<L: Lane> Contact<L> {
         products: [L; 6],
     ) {
         let (zero, one) = (touch.dt.lit(0.0), touch.dt.lit(1.0));
-        let [normal, one_way, other_way, first, mixed, second] = products;
+        let [product, one_way, other_way, first, mixed, second] = products;
         self.across = [one_way, other_way];
-        let depth = (-distance * distance.lit(1.0 / WIDTH)).max(zero).min(one);
-        let impedance = depth.mul_add(
-            distance.lit(IMPEDANCE[1] - IMPEDANCE[0]),
-            distance.lit(IMPEDANCE[0]),
-        );
-        // Stiffness and damping of MuJoCo's reference, with a damping ratio of 1.
-        let b = touch.dt * distance.lit(2.0 / (IMPEDANCE[1] * TIME_CONSTANT));
-        let k = touch.dt * distance.lit(1.0 / (IMPEDANCE[1] * TIME_CONSTANT).powi(2));
-        let share = one / k.mul_add(touch.dt, b + one);
-        // Above the ground the way down is free; only the velocity beyond that is braked.
-        let rate = (k + distance.lit(1.0 / (IMPEDANCE[1] * TIME_CONSTANT)) * distance.lit(2.0))
-            .select(zero.less(distance), k);
-        let wanted = rate.neg_mul_add(distance, now[0]) * share;
         let weight = L::splat(touch.token, touch.tree.weights[self.point]);
-        self.soft = weight * share * (one - impedance) / impedance;
-        self.step = (one / (normal + self.soft)).select(touching, zero);
+        let (wanted, soft) = normal(touch.dt, distance, now[0], weight);
+        self.soft = soft;
+        self.step = (one / (product + self.soft)).select(touching, zero);
         self.missing = [now[0] - wanted, now[1], now[2]];
         let inverse = one / mixed.neg_mul_add(mixed, first * second);
         let inverse = inverse.select(touching, zero);

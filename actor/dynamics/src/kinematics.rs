@@ -14,6 +14,7 @@ use crate::spatial::{Rotation, Spatial, Vec3};
 use crate::tree::{
     BASE, CHAIN, DEGREES, LIMB_FIRST, LIMB_JOINTS, LIMBS, POINTS, SHAPES, TRUNK, Tree,
 };
+use g1::collision::CAPSULES;
 use g1::{BODIES, JOINTS, joints, links};
 
 /// Gravity, m/s².
@@ -31,6 +32,10 @@ pub(crate) struct Walk<L> {
     pub(crate) limbs: [[[L; CHAIN]; LIMB_JOINTS]; LIMBS],
     /// Contact points from the root point, world axes, m.
     pub(crate) points: [Vec3<L>; POINTS],
+    /// Ends of the capsules from the root point, world axes, m, if parts meet.
+    pub(crate) capsules: [[Vec3<L>; 2]; CAPSULES],
+    /// The pelvis' left, world axes.
+    pub(crate) left: Vec3<L>,
     /// Velocities of the bodies in the frame that moves with the root point.
     pub(crate) velocities: [Spatial<L>; BODIES],
     pelvis: Body<L>,
@@ -54,6 +59,8 @@ impl<L: Lane> Walk<L> {
             trunk: [[zero; TRUNK]; TRUNK],
             limbs: [[[zero; CHAIN]; LIMB_JOINTS]; LIMBS],
             points: [none; POINTS],
+            capsules: [[none; 2]; CAPSULES],
+            left: none,
             velocities: [still; BODIES],
             pelvis: Body::new(zero),
             torso: Body::new(zero),
@@ -72,6 +79,7 @@ impl<L: Lane> Walk<L> {
             orientation: Rotation::of_quaternion(get(q), get(q + 1), get(q + 2), get(q + 3)),
             position: none,
         };
+        self.left = self.pelvis.frame.orientation.y;
         self.pelvis.acceleration = Spatial {
             turn: none,
             shift: Vec3::new(zero, zero, zero.lit(GRAVITY)),
@@ -110,6 +118,7 @@ impl<L: Lane> Walk<L> {
             .weigh(&self.velocities[links::TORSO], |i| group.torso[i]);
         let (frame, points) = (afresh(&self.torso.frame), &mut self.points);
         frame.place(token, tree, links::TORSO, points);
+        frame.span(token, tree, links::TORSO, &mut self.capsules);
         for limb in 2..LIMBS {
             self.limb::<TRUNK, 5>(token, tree, group, limb);
             self.torso
@@ -201,6 +210,7 @@ impl<L: Lane> Walk<L> {
             let numbers = &tree.inertials[body];
             this[0].weigh(&self.velocities[body], |i| L::splat(token, numbers[i]));
             this[0].frame.place(token, tree, body, &mut self.points);
+            this[0].frame.span(token, tree, body, &mut self.capsules);
         }
         each!(K in [5 4 3 2 1 0] {
             if K < COUNT {

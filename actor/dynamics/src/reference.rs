@@ -31,10 +31,10 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// With a solver's motors and ground.
+    /// With a solver's motors and ground, and parts that meet or not.
     pub fn new(solver: &Solver, sweeps: usize) -> Self {
         Self {
-            tree: contact::tree(),
+            tree: contact::tree(solver.self_collision),
             ground: solver.ground.clone(),
             motors: solver.motors.cast(),
             sweeps,

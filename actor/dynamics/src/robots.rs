@@ -29,6 +29,8 @@ pub struct Solver {
     pub motors: Motors<f32>,
     /// The ground.
     pub ground: Ground,
+    /// Whether limbs and trunk meet each other ([`g1::collision`]); they pass through each other otherwise.
+    pub self_collision: bool,
 }
 
 /// What a control step took and felt, per robot.
@@ -79,8 +81,8 @@ impl Robots {
     pub fn with_arch(solver: Solver, count: usize, arch: Arch) -> Self {
         let blocks = count.div_ceil(LANES);
         Self {
+            tree: contact::tree(solver.self_collision),
             solver,
-            tree: contact::tree(),
             arch,
             blocks: vec![Block::new(); blocks],
             targets: vec![[Row::default(); JOINTS]; blocks],

@@ -32,6 +32,10 @@ impl<L: Lane> Vec3<L> {
         Self::new(self.x + b.x, self.y + b.y, self.z + b.z)
     }
     #[inline(always)]
+    pub(crate) fn sub(self, b: Self) -> Self {
+        Self::new(self.x - b.x, self.y - b.y, self.z - b.z)
+    }
+    #[inline(always)]
     pub(crate) fn scale(self, s: L) -> Self {
         Self::new(self.x * s, self.y * s, self.z * s)
     }

@@ -20,6 +20,7 @@ fn solver() -> Solver {
             effort: JOINT_TABLE.map(|joint| joint.effort as f32),
         },
         ground: Ground::Plane,
+        self_collision: true,
     }
 }
 
@@ -196,4 +197,68 @@ fn a_saved_fleet_goes_on_bit_by_bit() {
         assert_eq!(robots.state(robot), other.state(robot));
     }
     assert!(!Robots::new(solver(), 6).restore(saved));
+}
+
+/// A robot high up whose legs are held against each other.
+fn pressed(solver: Solver, count: usize, arch: Arch) -> Robots {
+    let mut robots = Robots::with_arch(solver, count, arch);
+    for robot in 0..count {
+        let mut state = RobotState::standing();
+        state.position.z = 20.0;
+        // Every third one stays apart.
+        let turn = if robot % 3 == 2 {
+            0.0
+        } else {
+            0.12 + 0.003 * robot as f32
+        };
+        (state.joint_positions[1], state.joint_positions[7]) = (-turn, turn);
+        robots.set_state(robot, &state);
+        let mut targets = DEFAULT_POSE;
+        (targets[1], targets[7]) = (-2.0 * turn, 2.0 * turn);
+        robots.set_targets(robot, &targets);
+    }
+    robots.advance(40);
+    robots
+}
+
+#[test]
+fn parts_that_meet_have_the_same_bits_at_every_width_and_beside_every_neighbour() {
+    let (widest, single) = (
+        pressed(solver(), 20, Arch::new()),
+        pressed(solver(), 20, Arch::Scalar),
+    );
+    let few = pressed(solver(), 2, Arch::new());
+    let mut without = solver();
+    without.self_collision = false;
+    let passing = pressed(without, 20, Arch::new());
+    for robot in 0..20 {
+        assert_eq!(widest.state(robot), single.state(robot), "robot {robot}");
+        let apart = robot % 3 == 2;
+        let same = widest.state(robot) == passing.state(robot);
+        assert_eq!(same, apart, "robot {robot}");
+        let gap = g1::collision::nearest(&widest.state(robot)).1;
+        assert!(gap > -0.01, "robot {robot}: {gap} m");
+    }
+    for robot in 0..2 {
+        assert_eq!(few.state(robot), widest.state(robot), "robot {robot}");
+    }
+}
+
+#[test]
+fn a_fleet_saved_while_parts_meet_goes_on_bit_by_bit() {
+    let mut robots = pressed(solver(), 4, Arch::new());
+    let mut other = Robots::new(solver(), 4);
+    assert!(other.restore(robots.save()));
+    let mut targets = DEFAULT_POSE;
+    (targets[1], targets[7]) = (-0.3, 0.3);
+    for fleet in [&mut robots, &mut other] {
+        for robot in 0..4 {
+            fleet.set_targets(robot, &targets);
+        }
+        fleet.advance(40);
+    }
+    for robot in 0..4 {
+        assert!(g1::collision::nearest(&robots.state(robot)).1 < 0.005);
+        assert_eq!(robots.state(robot), other.state(robot));
+    }
 }

@@ -46,6 +46,7 @@ fn solver(case: &Case, finer: usize) -> Solver {
         sweeps: SWEEPS,
         motors: motors(&case.gains),
         ground: Ground::Plane,
+        self_collision: true,
     }
 }
 

@@ -63,7 +63,7 @@ pub use ground::GroundConfig;
 pub use kind::{Kind, KindsConfig};
 pub use model::Variation;
 pub use moment::Moment;
-pub use physics::Physics;
+pub use physics::{Mechanics, Physics};
 pub use randomization::RandomizationConfig;
 pub use reward::RewardConfig;
 pub use rows::StepRows;

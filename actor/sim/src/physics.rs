@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use worlds::Worlds;
 
 pub use crate::world::Exertion;
-pub use vocabulary::Physics;
+pub use vocabulary::{Mechanics, Physics};
 
 /// The robots of a fleet in their engine.
 pub(crate) enum Bodies {
@@ -44,14 +44,15 @@ macro_rules! both {
 impl Bodies {
     /// Robots on a level floor, or on `ground`.
     pub(crate) fn new(
-        physics: Physics,
+        mechanics: Mechanics,
         gains: &Gains,
         count: usize,
         ground: Option<&Ground>,
     ) -> Self {
-        match physics {
-            Physics::Rapier => Self::Rapier(Box::new(Worlds::new(gains, count, ground))),
-            Physics::Batched => Self::Batched(Box::new(Batched::new(gains, count, ground))),
+        let meet = mechanics.self_collision;
+        match mechanics.physics {
+            Physics::Rapier => Self::Rapier(Box::new(Worlds::new(gains, count, ground, meet))),
+            Physics::Batched => Self::Batched(Box::new(Batched::new(gains, count, ground, meet))),
         }
     }
 

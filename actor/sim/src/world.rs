@@ -6,6 +6,8 @@
 
 mod build;
 #[cfg(test)]
+mod meeting;
+#[cfg(test)]
 mod tests;
 
 use crate::actuator::{self, Gains};

@@ -15,7 +15,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde_json::{Value, json};
 use sim::{Fleet, Physics, RandomizationConfig, Starts, StepRows, TaskConfig};
-use terminal::Engine;
+use terminal::{Engine, SelfCollision};
 
 use measured::{Measured, cpu_seconds, resident_bytes};
 
@@ -42,6 +42,9 @@ pub(crate) struct SimBench {
     /// What moves the robots: rapier, or the batched solver
     #[arg(long, value_enum, default_value_t = Engine::Rapier)]
     physics: Engine,
+    /// Whether legs, arms and trunk meet each other
+    #[arg(long, value_enum, default_value_t = SelfCollision::On)]
+    self_collision: SelfCollision,
     /// Simulate without the domain randomisation of Table I
     #[arg(long)]
     plain: bool,
@@ -79,6 +82,7 @@ impl SimBench {
             "resets": physics.resets,
             "faults": physics.faults,
             "physics": Physics::from(self.physics),
+            "self_collision": self.self_collision == SelfCollision::On,
             "environments": self.environments,
             "fleets": self.fleets,
             // What the process grew by, the fleet's rows of a step included.
@@ -133,7 +137,7 @@ impl SimBench {
         let n = self.environments;
         let before = resident_bytes();
         let mut fleet = Fleet::new(
-            self.physics.into(),
+            self.self_collision.within(self.physics),
             &TaskConfig::default(),
             &randomization,
             Starts::default(),
@@ -235,6 +239,7 @@ mod tests {
             fleets: 2,
             hidden: vec![8],
             physics: Engine::Batched,
+            self_collision: SelfCollision::On,
             plain: false,
             seed: 1,
         };

@@ -13,7 +13,7 @@ use playback::{Recording, page};
 use policy::Show;
 use sim::RandomizationConfig;
 use terminal::failure::usage;
-use terminal::{Engine, Place, console, file};
+use terminal::{Engine, Place, SelfCollision, console, file};
 
 /// Watch a policy or a reference motion: a page for any browser, or the frames as data
 ///
@@ -48,6 +48,9 @@ pub(crate) struct Play {
     /// Engine that moves the robot, whatever the policy was trained in
     #[arg(long, value_enum, default_value_t = Engine::Rapier)]
     physics: Engine,
+    /// Whether legs, arms and trunk meet each other, whatever the policy was trained with
+    #[arg(long, value_enum, default_value_t = SelfCollision::On)]
+    self_collision: SelfCollision,
     /// Seed of the episode
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -93,7 +96,7 @@ impl Play {
                 RandomizationConfig::default()
             },
             from_reference: self.from_reference,
-            physics: self.physics.into(),
+            mechanics: self.self_collision.within(self.physics),
             seed: self.seed,
             again: false,
         }

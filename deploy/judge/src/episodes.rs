@@ -168,7 +168,7 @@ impl<'a> Walker<'a> {
         };
         Ok(Fleet::seen_by(
             &tables,
-            self.subject.physics,
+            self.subject.mechanics,
             &task,
             &randomization,
             starts,

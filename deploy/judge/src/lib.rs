@@ -30,7 +30,7 @@ use sim::GroundConfig;
 use sim::randomization::ROWS;
 use terminal::console::{self, Console};
 use terminal::failure::usage;
-use terminal::{Engine, Place};
+use terminal::{Engine, Place, SelfCollision};
 
 pub use command::Command;
 use episodes::{Conditions, Unit, Walker};
@@ -99,6 +99,9 @@ pub struct Evaluate {
     /// Engine that judges, whatever the policy was trained in
     #[arg(long, value_enum, default_value_t = Engine::Rapier)]
     physics: Engine,
+    /// Whether legs, arms and trunk meet each other, whatever the policy was trained with
+    #[arg(long, value_enum, default_value_t = SelfCollision::On)]
+    self_collision: SelfCollision,
     /// Walk on hills with slopes up to so many degrees in every direction, at most 5. Without it and --bumps the floor
     /// is level, whatever the policy was trained on
     #[arg(long, value_name = "DEG", default_value_t = 0.0)]
@@ -131,7 +134,7 @@ impl Evaluate {
     pub fn run(&self) -> Result<()> {
         let conditions = self.conditions()?;
         let mut subject = Subject::open(&self.place, &self.run)?;
-        subject.physics = self.physics.into();
+        subject.mechanics = self.self_collision.within(self.physics);
         subject.task.ground = self.ground()?;
         let given = self.judge.as_deref();
         let frozen = given

@@ -28,6 +28,7 @@ pub(super) struct Report {
     judge: Option<PathBuf>,
     /// The engine that moved the robots.
     physics: Physics,
+    self_collision: bool,
     /// What the robots walked on, where the floor was not level.
     #[serde(skip_serializing_if = "Option::is_none")]
     ground: Option<GroundConfig>,
@@ -86,7 +87,8 @@ impl Report {
             checkpoint: subject.kept.path.clone(),
             iteration: subject.kept.iteration,
             judge: judge.map(|judge| judge.path.clone()),
-            physics: subject.physics,
+            physics: subject.mechanics.physics,
+            self_collision: subject.mechanics.self_collision,
             ground: subject.task.ground,
             seconds: f64::from(conditions.steps) / CONTROL_HZ,
             episodes: conditions.episodes,
@@ -130,8 +132,13 @@ impl Report {
                 ground.slope, ground.bumps
             )
         });
+        let parts = if self.self_collision {
+            ""
+        } else {
+            ", its parts passing through each other"
+        };
         format!(
-            "{}, iteration {}: {} of {} s each, seed {}, {}{ground}; style {judge}",
+            "{}, iteration {}: {} of {} s each, seed {}, {}{parts}{ground}; style {judge}",
             self.checkpoint.display(),
             self.iteration,
             count(self.episodes, "episode"),
@@ -210,6 +217,7 @@ mod tests {
             iteration: 100,
             judge: None,
             physics: Physics::Batched,
+            self_collision: true,
             ground: None,
             seconds: 20.0,
             episodes: 4,

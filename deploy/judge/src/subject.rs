@@ -10,7 +10,7 @@ use observation::{ObservationConfig, Tables};
 use policy::{Policy, Shape};
 use run::motion::Learned;
 use run::{Checkpoint, Config, FleetConfig};
-use sim::{Physics, Starts, TaskConfig};
+use sim::{Mechanics, Starts, TaskConfig};
 use terminal::Place;
 use terminal::console::say;
 use terminal::failure::usage;
@@ -38,8 +38,8 @@ pub struct Subject {
     pub kept: Kept,
     /// The task that it is tried by.
     pub task: TaskConfig,
-    /// What moves the robots: what it learned in, unless whoever tries it says otherwise.
-    pub physics: Physics,
+    /// What moves the robots and whether their parts meet: what it learned in, unless whoever tries it says otherwise.
+    pub mechanics: Mechanics,
     motion: MotionConfig,
     /// Made when it is first asked for: most who watch a policy never do.
     reference: OnceLock<Reference>,
@@ -173,7 +173,7 @@ impl Subject {
         let fleet: FleetConfig = kept.config.section()?;
         Ok(Self {
             task: kept.task()?,
-            physics: fleet.physics,
+            mechanics: fleet.mechanics(),
             motion,
             reference: OnceLock::new(),
             kept,

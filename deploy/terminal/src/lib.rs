@@ -12,5 +12,5 @@ pub mod figures;
 pub mod file;
 mod place;
 
-pub use engine::Engine;
+pub use engine::{Engine, SelfCollision};
 pub use place::Place;

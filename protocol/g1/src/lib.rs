@@ -14,9 +14,11 @@
 //! | left–right reflection | [`mirror`] |
 //! | forward kinematics, Jacobian, foot and mass points | [`kinematics`] |
 //! | what the bodies look like in pictures | [`shapes`] |
+//! | which parts of the robot can touch each other | [`collision`] |
 //! | the same robot as MJCF, for MuJoCo | [`mjcf`] |
 #![forbid(unsafe_code)]
 
+pub mod collision;
 pub mod gait;
 pub mod joints;
 pub mod kinematics;

@@ -6,7 +6,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vocabulary::invalid::{require, within};
-use vocabulary::{Checked, Physics, Section};
+use vocabulary::{Checked, Mechanics, Physics, Section};
 
 /// When actors collect.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -71,6 +71,9 @@ pub struct FleetConfig {
     /// Which engine moves the robots: `"rapier"` (default; the judge of every result) or `"batched"`, the fast solver for
     /// this one robot.
     pub physics: Physics,
+    /// Whether a robot's legs, arms and trunk meet each other (default: true), in both engines. Without it they pass
+    /// through each other, and policies learn to let them.
+    pub self_collision: bool,
     /// Environments of the whole group, shared evenly among the actors it starts with.
     pub environments: usize,
     /// Control steps per environment and rollout (the paper: 24).
@@ -111,6 +114,7 @@ impl Default for FleetConfig {
     fn default() -> Self {
         Self {
             physics: Physics::default(),
+            self_collision: true,
             environments: 256,
             steps: 32,
             actors: 0,
@@ -188,6 +192,14 @@ impl Section for FleetConfig {
 }
 
 impl FleetConfig {
+    /// The engine, and what may touch in it.
+    pub fn mechanics(&self) -> Mechanics {
+        Mechanics {
+            physics: self.physics,
+            self_collision: self.self_collision,
+        }
+    }
+
     /// Environments of one actor: an even share, rounded up so that all actors send one shape.
     pub fn environments_per_actor(&self) -> usize {
         self.environments.div_ceil(self.actors.max(1))

@@ -22,6 +22,6 @@ pub mod section;
 
 pub use cause::{Cause, Counts, RUNNING};
 pub use invalid::{Checked, Invalid};
-pub use physics::Physics;
+pub use physics::{Mechanics, Physics};
 pub use ramp::Ramp;
 pub use section::Section;

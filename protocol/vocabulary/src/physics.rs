@@ -1,4 +1,4 @@
-//! The engines that can move the robots.
+//! The engines that can move the robots, and what may touch in them.
 //!
 //! Here because a run's configuration names one, simulation has them, and reports say which it was.
 
@@ -14,4 +14,23 @@ pub enum Physics {
     Rapier,
     /// The solver for this one robot that steps sixteen per instruction.
     Batched,
+}
+
+/// An engine, and what may touch in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mechanics {
+    /// What moves the robots.
+    pub physics: Physics,
+    /// Whether a robot's limbs and trunk meet each other; they pass through each other otherwise.
+    pub self_collision: bool,
+}
+
+impl From<Physics> for Mechanics {
+    /// Parts meet, as those of a robot do.
+    fn from(physics: Physics) -> Self {
+        Self {
+            physics,
+            self_collision: true,
+        }
+    }
 }

@@ -1,4 +1,4 @@
-//! One visit to the contacts of a limb.
+//! One visit to the contacts of a limb, or to those of the robot with itself.
 //!
 //! Separate because this is the inner loop of the solver. An impulse waits for the one before it, so the
 //! groups take turns contact by contact: with two in turn a whole step takes 6 % less than with one.
@@ -72,6 +72,17 @@ pub(crate) fn visit<L: Lane, const PREFIX: usize, const COUNT: usize>(
             contact.turn(begin, group.friction, chain);
             from[..COUNT].copy_from_slice(&rest[1..]);
             group.zeta[waist] = rest[0];
+        }
+    }
+}
+
+/// Visits every contact of the robots with themselves once.
+#[inline(always)]
+pub(crate) fn visit_pairs<L: Lane>(groups: &mut [&mut Contacts<L>]) {
+    let most = groups.iter().map(|group| group.pairs.count()).max();
+    for i in 0..most.unwrap_or(0) {
+        for group in &mut *groups {
+            group.pairs.relax(i, &mut group.zeta);
         }
     }
 }

@@ -19,6 +19,7 @@ fn limp() -> Reference {
         sweeps: 4,
         motors,
         ground: Ground::Plane,
+        self_collision: true,
     };
     let mut reference = Reference::new(&solver, 4);
     let mut state = RobotState::standing();

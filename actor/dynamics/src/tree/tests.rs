@@ -44,7 +44,7 @@ fn points_know_what_moves_them() {
     assert_eq!(POINT_TABLE[12].chain(), (2, BASE));
     assert_eq!(POINT_TABLE[16].chain(), (2, TRUNK));
     assert_eq!(POINT_TABLE[27].chain(), (3, CHAIN));
-    let tree = crate::contact::tree::<f64>();
+    let tree = crate::contact::tree::<f64>(true);
     let (first, end) = tree.of_body[RIGHT_FOOT];
     assert_eq!(tree.order[first..end], [4, 5, 6, 7]);
     assert_eq!(tree.of_body[1].0, tree.of_body[1].1);

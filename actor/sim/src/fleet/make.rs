@@ -4,7 +4,7 @@ use super::Fleet;
 use crate::actuator::Gains;
 use crate::env::{Environment, Setting};
 use crate::error::SimError;
-use crate::physics::{Bodies, Physics};
+use crate::physics::{Bodies, Mechanics};
 use crate::randomization::{RandomizationConfig, Table};
 use crate::start::{Pools, Starts};
 use crate::task::TaskConfig;
@@ -14,15 +14,16 @@ use vocabulary::Section;
 
 /// What a fleet is of, whatever it does.
 struct Make {
-    physics: Physics,
+    mechanics: Mechanics,
     gains: Gains,
     tables: Tables,
 }
 
 impl Fleet {
-    /// Environments at the start of their first episodes, seen as in the paper.
+    /// Environments at the start of their first episodes, seen as in the paper. An engine alone means robots whose parts
+    /// meet each other.
     pub fn new(
-        physics: Physics,
+        mechanics: impl Into<Mechanics>,
         task: &TaskConfig,
         randomization: &RandomizationConfig,
         starts: Starts,
@@ -31,7 +32,7 @@ impl Fleet {
     ) -> Result<Self, SimError> {
         let gains = Gains::of_the_robot();
         Self::with_gains(
-            physics,
+            mechanics,
             task,
             randomization,
             starts,
@@ -44,7 +45,7 @@ impl Fleet {
     /// The same, seen as lists say.
     pub fn seen_by(
         tables: &Tables,
-        physics: Physics,
+        mechanics: impl Into<Mechanics>,
         task: &TaskConfig,
         randomization: &RandomizationConfig,
         starts: Starts,
@@ -52,7 +53,7 @@ impl Fleet {
         seed: u64,
     ) -> Result<Self, SimError> {
         let make = Make {
-            physics,
+            mechanics: mechanics.into(),
             gains: Gains::of_the_robot(),
             tables: tables.clone(),
         };
@@ -61,7 +62,7 @@ impl Fleet {
 
     /// With motors of other gains than the robot's.
     pub fn with_gains(
-        physics: Physics,
+        mechanics: impl Into<Mechanics>,
         task: &TaskConfig,
         randomization: &RandomizationConfig,
         starts: Starts,
@@ -70,7 +71,7 @@ impl Fleet {
         gains: Gains,
     ) -> Result<Self, SimError> {
         let make = Make {
-            physics,
+            mechanics: mechanics.into(),
             gains,
             tables: Tables::default(),
         };
@@ -86,7 +87,7 @@ impl Fleet {
         seed: u64,
     ) -> Result<Self, SimError> {
         let Make {
-            physics,
+            mechanics,
             gains,
             tables,
         } = make;
@@ -113,13 +114,13 @@ impl Fleet {
         let own = setting.tables.critic.as_ref().map(|critic| &critic.own);
         let frame = own.map_or(0, observation::Table::frame_width);
         let frame = frame.max(setting.tables.actor.frame_width());
-        let mut bodies = Bodies::new(physics, &gains, environments, setting.ground.as_ref());
+        let mut bodies = Bodies::new(mechanics, &gains, environments, setting.ground.as_ref());
         let mut fleet = Self {
             environments: (0..environments)
                 .map(|index| Environment::new(&setting, &mut bodies, seed, index))
                 .collect(),
             setting,
-            physics,
+            physics: mechanics.physics,
             bodies,
             acted: vec![true; environments],
             observations: vec![0.0; environments * widths.observation],

@@ -16,7 +16,12 @@ const SWEEPS: usize = 4;
 pub(crate) struct Batched(Robots);
 
 impl Batched {
-    pub(crate) fn new(gains: &Gains, count: usize, ground: Option<&Ground>) -> Self {
+    pub(crate) fn new(
+        gains: &Gains,
+        count: usize,
+        ground: Option<&Ground>,
+        self_collision: bool,
+    ) -> Self {
         let solver = Solver {
             dt: PHYSICS_STEP,
             sweeps: SWEEPS,
@@ -28,6 +33,7 @@ impl Batched {
             ground: ground.map_or(dynamics::Ground::Plane, |ground| {
                 dynamics::Ground::Heights(ground.heights().clone())
             }),
+            self_collision,
         };
         Self(Robots::new(solver, count))
     }

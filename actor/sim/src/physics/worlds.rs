@@ -21,8 +21,13 @@ pub(crate) struct Worlds {
 }
 
 impl Worlds {
-    pub(crate) fn new(gains: &Gains, count: usize, ground: Option<&Ground>) -> Self {
-        let mut template = World::new(&Variation::NOMINAL);
+    pub(crate) fn new(
+        gains: &Gains,
+        count: usize,
+        ground: Option<&Ground>,
+        self_collision: bool,
+    ) -> Self {
+        let mut template = World::with_self_collision(&Variation::NOMINAL, self_collision);
         if let Some(ground) = ground {
             template.lay(ground);
         }

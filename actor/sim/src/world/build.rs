@@ -1,10 +1,11 @@
-//! Building a world: links, hinges, soles and floor, once by hand and then by copy.
+//! Building a world: links, hinges, soles, capsules and floor, once by hand and then by copy.
 //!
 //! Separate because this happens once per episode and has nothing to do with stepping.
 
 use super::{BASE_DEGREES, DEGREES, World};
 use crate::ground::Ground;
 use crate::model::{self, Variation};
+use g1::collision::{CAPSULE_TABLE, CAPSULES, PAIR_TABLE};
 use g1::{BODIES, JOINT_TABLE, LEFT_FOOT, RIGHT_FOOT, links};
 use nalgebra::{Unit, Vector3};
 use rapier3d::dynamics::{
@@ -17,17 +18,40 @@ use rapier3d::geometry::{
 };
 use rapier3d::math::{Pose, Vector};
 
-/// Feet touch the floor and nothing else touches anything.
+/// Soles touch the floor.
 const FLOOR: Group = Group::GROUP_1;
 const SOLES: Group = Group::GROUP_2;
+/// First of the capsules' groups: each has one of its own, and touches those that it is in a pair with.
+const CAPSULES_FROM: u32 = 2;
+const _: () = assert!(CAPSULES_FROM as usize + CAPSULES <= 32, "a bit each");
+
+/// The groups of a capsule and of all its partners.
+fn capsule_groups(capsule: usize) -> InteractionGroups {
+    let of = |capsule: usize| 1 << (CAPSULES_FROM + capsule as u32);
+    let partners = PAIR_TABLE.iter().filter_map(|&[a, b]| match capsule {
+        _ if capsule == a => Some(of(b)),
+        _ if capsule == b => Some(of(a)),
+        _ => None,
+    });
+    let with = partners.fold(0, |all: u32, one: u32| all | one);
+    groups(
+        Group::from_bits_retain(of(capsule)),
+        Group::from_bits_retain(with),
+    )
+}
 
 fn groups(member: Group, with: Group) -> InteractionGroups {
     InteractionGroups::new(member, with, InteractionTestMode::And)
 }
 
 impl World {
-    /// A robot in its tables' zero pose at the origin; place it with [`World::set_state`].
+    /// A robot in its tables' zero pose at the origin; place it with [`World::set_state`]. Its parts meet each other.
     pub fn new(variation: &Variation) -> Self {
+        Self::with_self_collision(variation, true)
+    }
+
+    /// Likewise; its limbs and trunk meet each other, or pass through each other.
+    pub fn with_self_collision(variation: &Variation, self_collision: bool) -> Self {
         let mut bodies = RigidBodySet::new();
         let mut colliders = ColliderSet::new();
         let mut multibody_joints = MultibodyJointSet::new();
@@ -57,6 +81,19 @@ impl World {
                 .collision_groups(groups(SOLES, FLOOR));
             colliders.insert_with_parent(sole, links[foot], &mut bodies)
         });
+        let meeting = CAPSULE_TABLE.iter().enumerate();
+        for (index, capsule) in meeting.filter(|_| self_collision) {
+            let offset = model::frame_offset(capsule.body);
+            let [from, to] = capsule
+                .ends
+                .map(|end| model::vector(Vector3::from(end) - offset));
+            let collider = ColliderBuilder::capsule_from_endpoints(from, to, capsule.radius as f32)
+                .density(0.0)
+                .friction(0.0)
+                .friction_combine_rule(CoefficientCombineRule::Multiply)
+                .collision_groups(capsule_groups(index));
+            colliders.insert_with_parent(collider, links[capsule.body], &mut bodies);
+        }
         let mut robot = MultibodyJointHandle::invalid();
         for (i, joint) in JOINT_TABLE.iter().enumerate() {
             robot = multibody_joints
@@ -84,7 +121,7 @@ impl World {
                 }
             );
         }
-        multibody.set_self_contacts_enabled(false);
+        multibody.set_self_contacts_enabled(self_collision);
         // The default of 0.1 on every angular degree of freedom brakes the free base, too.
         multibody.damping_mut().fill(0.0);
         for (degree, armature) in multibody.armature_mut().iter_mut().enumerate() {

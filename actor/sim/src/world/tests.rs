@@ -16,7 +16,7 @@ fn world(state: &RobotState) -> World {
 }
 
 /// Standing, lifted by `height`.
-fn lifted(height: f32) -> RobotState {
+pub(super) fn lifted(height: f32) -> RobotState {
     let mut state = RobotState::standing();
     state.position.z += height;
     state
@@ -39,7 +39,7 @@ fn stiff() -> Gains {
 }
 
 /// Motors without current.
-fn limp() -> Gains {
+pub(super) fn limp() -> Gains {
     Gains {
         stiffness: [0.0; JOINTS],
         damping: [0.0; JOINTS],

@@ -5,7 +5,7 @@ use g1::ACTION;
 use judge::Subject;
 use playback::{Frame, Recording};
 use sim::world::CONTROL_STEP;
-use sim::{FallConfig, Fleet, Physics, RandomizationConfig, Starts, StepRows, TimeOutConfig};
+use sim::{FallConfig, Fleet, Mechanics, RandomizationConfig, Starts, StepRows, TimeOutConfig};
 use vocabulary::{RUNNING, Ramp};
 
 /// Height of the pelvis at which a fall has been seen to its end, m.
@@ -21,7 +21,7 @@ pub(crate) struct Show {
     pub(crate) randomization: RandomizationConfig,
     /// Begin in a frame of the reference motion instead of standing.
     pub(crate) from_reference: bool,
-    pub(crate) physics: Physics,
+    pub(crate) mechanics: Mechanics,
     pub(crate) seed: u64,
     /// A robot that lies is put up again for the next command; the recording ends there otherwise.
     pub(crate) again: bool,
@@ -70,7 +70,7 @@ pub(crate) fn record(subject: &Subject, show: &Show) -> Result<Recording> {
     let begin = |seed| {
         Fleet::seen_by(
             &tables,
-            show.physics,
+            show.mechanics,
             &task,
             &show.randomization,
             starts.clone(),
@@ -163,7 +163,7 @@ mod tests {
             seconds: 0.1,
             randomization: RandomizationConfig::default(),
             from_reference: false,
-            physics: Physics::Rapier,
+            mechanics: sim::Physics::Rapier.into(),
             seed: 1,
             again: true,
         };

@@ -47,7 +47,7 @@ fn page_of(place: &Place, folder: &Folder) -> Result<(PathBuf, String)> {
             commands: commands.to_vec(),
             randomization: RandomizationConfig::default(),
             from_reference: false,
-            physics: subject.physics,
+            mechanics: subject.mechanics,
             seed: 1,
             again: true,
         },

@@ -66,6 +66,17 @@ fn soles_stay_above_ground_and_swing_clears_it() {
 }
 
 #[test]
+fn no_gait_touches_itself() {
+    for clip in all() {
+        let gap = |frame| g1::collision::nearest(frame);
+        let nearest = clip.frames.iter().map(gap);
+        let (pair, distance) = nearest.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
+        let [a, b] = g1::collision::names(pair);
+        assert!(distance > 0.0, "{}: {a} and {b} at {distance} m", clip.name);
+    }
+}
+
+#[test]
 fn joints_stay_within_their_limits() {
     for clip in all() {
         for frame in &clip.frames {

@@ -33,6 +33,7 @@ const ROWS: [(&str, &[(&str, &str)]); 9] = [
 /// Says in today's words what can be said in them; the rest stays.
 pub(super) fn in_todays_words(table: &mut Table) {
     physics(table);
+    self_collision(table);
     for (path, now) in GONE {
         if now != "none" {
             drop_same(table, path, now);
@@ -69,6 +70,15 @@ fn physics(table: &mut Table) {
     }
 }
 
+/// Where it is not said whether a robot's parts meet, they passed through each other.
+fn self_collision(table: &mut Table) {
+    if let Some(Value::Table(fleet)) = table.get_mut("fleet") {
+        fleet
+            .entry("self_collision")
+            .or_insert(Value::Boolean(false));
+    }
+}
+
 /// A row that was switched on is a table; one that was not is none.
 fn rows(randomization: &mut Table) {
     for (row, keys) in ROWS {
@@ -101,12 +111,21 @@ mod tests {
     #[test]
     fn the_engine_is_of_the_fleet() {
         let old = "[task]\nphysics = \"batched\"\n[task.reward]\n[fleet]\nsteps = 8";
-        let new = "[task.reward]\n[fleet]\nsteps = 8\nphysics = \"batched\"";
+        let new =
+            "[task.reward]\n[fleet]\nsteps = 8\nphysics = \"batched\"\nself_collision = false";
         assert_eq!(today(old), toml::from_str(new).unwrap());
         assert_eq!(
             today("[task]\nphysics = \"batched\"")["fleet"]["physics"].as_str(),
             Some("batched")
         );
+    }
+
+    #[test]
+    fn parts_pass_through_each_other_where_it_is_not_said() {
+        let said = |text| today(text)["fleet"]["self_collision"].as_bool();
+        assert_eq!(said("[fleet]\nsteps = 8"), Some(false));
+        assert_eq!(said("[fleet]\nself_collision = true"), Some(true));
+        assert_eq!(said("[fleet]\nself_collision = false"), Some(false));
     }
 
     #[test]
