@@ -58,7 +58,7 @@ class Simulator:
         for c in range(data.ncon):
             contact = data.contact[c]
             bodies = {int(self.model.geom_bodyid[g]) for g in contact.geom}
-            if bodies & self.feet:
+            if 0 in bodies and bodies & self.feet:
                 mujoco.mj_contactForce(self.model, data, c, wrench)
                 total += wrench[0] * contact.frame[2]
         return abs(total)

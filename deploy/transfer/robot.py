@@ -174,6 +174,9 @@ class Robot:
         """Normal force of the floor on both soles, N."""
         total, wrench = 0.0, np.zeros(6)
         for i in range(self.data.ncon):
+            # Legs and arms meet each other, too.
+            if 0 not in self.model.geom_bodyid[self.data.contact[i].geom]:
+                continue
             mujoco.mj_contactForce(self.model, self.data, i, wrench)
             total += wrench[0]
         return total

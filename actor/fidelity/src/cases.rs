@@ -25,6 +25,7 @@ pub(crate) const STOPS: [(usize, bool); 4] = [
 pub fn all() -> Vec<Case> {
     let mut cases = vec![tumble(), posing(), drop(), stand(), squat(), creep()];
     cases.extend(STOPS.map(|(joint, upper)| into_stop(joint, upper)));
+    cases.extend([legs(), arm()]);
     cases
 }
 
@@ -121,6 +122,30 @@ fn into_stop(joint: usize, upper: bool) -> Case {
     } else {
         JOINT_TABLE[joint].lower as f32 - 1.5
     };
+    // A leg on its way inward finds the other one out of it.
+    let (roll, other) = (joints::RIGHT_LEG + 1, joints::LEFT_LEG + 1);
+    if joint == roll {
+        case.start.joint_positions[other] = 0.6;
+        case.targets[0][other] = 0.6;
+    }
+    case
+}
+
+/// The robot's own motors roll both hips inward in free fall until the legs meet.
+pub(crate) fn legs() -> Case {
+    let mut case = Case::new("legs", 1.0, lifted(10.0), Gains::of_the_robot());
+    case.targets[0][joints::LEFT_LEG + 1] = -0.5;
+    case.targets[0][joints::RIGHT_LEG + 1] = 0.5;
+    case.refined = true;
+    case
+}
+
+/// The left arm is pulled in and across in free fall until it meets the trunk.
+pub(crate) fn arm() -> Case {
+    let mut case = Case::new("arm", 1.0, lifted(10.0), Gains::of_the_robot());
+    case.targets[0][joints::LEFT_ARM + 1] = -0.6;
+    case.targets[0][joints::LEFT_ARM + 2] = -1.0;
+    case.refined = true;
     case
 }
 

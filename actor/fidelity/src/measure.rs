@@ -129,6 +129,20 @@ pub fn rows(traces: &Traces) -> Vec<Row> {
         });
         error(format!("{}: beyond it", case.name), "rad", beyond);
     }
+    for name in ["legs", "arm"] {
+        let pair = traces.coarse(name).zip(traces.fine(name));
+        let joints = pair.map(|(a, b)| {
+            let squares = a.frames.iter().zip(&b.frames);
+            let sum: f64 = squares.map(|(a, b)| rms_of_joints(a, b).powi(2)).sum();
+            (sum / a.frames.len() as f64).sqrt()
+        });
+        error(format!("{name} meeting: joints"), "rad", joints);
+        let depth = traces.coarse(name).map(|trace| {
+            let gaps = trace.frames.iter().map(|frame| frame.nearest());
+            -1e3 * f64::from(gaps.fold(0.0, f32::min))
+        });
+        error(format!("{name} meeting: within each other"), "mm", depth);
+    }
     let robots = traces.stress.len() as f64;
     let unsound = traces.stress.iter().filter(|trace| !trace.sound).count() as f64;
     let share = (robots > 0.0).then_some(100.0 * unsound / robots);

@@ -2,7 +2,7 @@
 //!
 //! Separate because other simulators write it.
 
-use g1::{JOINTS, RobotState, kinematics};
+use g1::{JOINTS, RobotState, collision, kinematics};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -47,14 +47,24 @@ impl Frame {
         }
     }
 
-    /// Mean place of the corners of both soles on the floor, m.
-    pub fn feet(&self) -> [f32; 2] {
+    /// Place and posture as a state at rest.
+    fn state(&self) -> RobotState {
         let [w, i, j, k] = self.orientation;
         let mut state = RobotState::standing();
         state.position = Vector3::from(self.position);
         state.orientation = UnitQuaternion::from_quaternion(Quaternion::new(w, i, j, k));
         state.joint_positions = self.joints;
-        let bodies = kinematics::forward_state(&state);
+        state
+    }
+
+    /// The smallest gap between parts of the robot that can meet, m; negative where they are within each other.
+    pub fn nearest(&self) -> f32 {
+        collision::nearest(&self.state()).1
+    }
+
+    /// Mean place of the corners of both soles on the floor, m.
+    pub fn feet(&self) -> [f32; 2] {
+        let bodies = kinematics::forward_state(&self.state());
         let mut mean = [0.0; 2];
         for foot in [g1::LEFT_FOOT, g1::RIGHT_FOOT] {
             for corner in kinematics::sole_points(&bodies, foot) {

@@ -38,6 +38,7 @@ impl FidelityBench {
                     timestep: case::STEP,
                     gravity: 9.81,
                     friction: 1.0,
+                    self_collision: true,
                 }),
                 "step": case::STEP,
                 "hold": case::HOLD,

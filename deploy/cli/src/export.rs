@@ -12,7 +12,7 @@ use judge::Kept;
 use sim::RandomizationConfig;
 use sim::world::{CONTROL_STEP, GRAVITY, PHYSICS_STEP};
 use terminal::failure::usage;
-use terminal::{Place, console};
+use terminal::{Place, SelfCollision, console};
 
 /// The robot's file.
 const MODEL: &str = "g1.xml";
@@ -38,6 +38,9 @@ pub(crate) struct Export {
     /// Write the robot alone, to DIR/g1.xml or to standard output
     #[arg(long, conflicts_with = "run")]
     mjcf: bool,
+    /// Whether legs, arms and trunk meet each other in the robot's file
+    #[arg(long, value_enum, default_value_t = SelfCollision::On, conflicts_with = "ship")]
+    self_collision: SelfCollision,
 }
 
 impl Export {
@@ -45,16 +48,19 @@ impl Export {
         let mut out = console::results();
         let written = match (&self.run, &self.out) {
             (None, None) => {
-                write!(out, "{}", model())?;
+                write!(out, "{}", model(self.self_collision))?;
                 return Ok(());
             }
-            (None, Some(folder)) => write_all(folder, &[(MODEL, model().into_bytes())])?,
+            (None, Some(folder)) => {
+                write_all(folder, &[(MODEL, model(self.self_collision).into_bytes())])?
+            }
             (Some(run), Some(folder)) if self.ship => {
                 ship::write(&Kept::open(&self.place, run)?, folder)?
             }
-            (Some(run), Some(folder)) => {
-                write_all(folder, &files(&Kept::open(&self.place, run)?)?)?
-            }
+            (Some(run), Some(folder)) => write_all(
+                folder,
+                &files(&Kept::open(&self.place, run)?, self.self_collision)?,
+            )?,
             (Some(_), None) => return Err(usage("--out DIR: say where to write")),
         };
         for (path, bytes) in written {
@@ -65,17 +71,18 @@ impl Export {
 }
 
 /// The robot in the simulation's own step, gravity and nominal friction.
-fn model() -> String {
+fn model(self_collision: SelfCollision) -> String {
     let decimal = |x: f32| f64::from((x * 1e6).round()) / 1e6;
     mjcf::document(&mjcf::Physics {
         timestep: decimal(PHYSICS_STEP),
         gravity: decimal(GRAVITY),
         friction: f64::from(sim::Variation::NOMINAL.friction),
+        self_collision: self_collision == SelfCollision::On,
     })
 }
 
 /// Every file of an export with its bytes; the description, which names the others, comes last.
-fn files(kept: &Kept) -> Result<Vec<(&'static str, Vec<u8>)>> {
+fn files(kept: &Kept, self_collision: SelfCollision) -> Result<Vec<(&'static str, Vec<u8>)>> {
     let place = kept.path.display();
     let (shape, flat) = kept.weights()?;
     let clip = kept.learning.policy.observation_clip;
@@ -89,7 +96,7 @@ fn files(kept: &Kept) -> Result<Vec<(&'static str, Vec<u8>)>> {
         ("weights_sha256", origin.weights_sha256.as_str()),
     ];
     let mut files = vec![
-        (MODEL, model().into_bytes()),
+        (MODEL, model(self_collision).into_bytes()),
         ("policy.onnx", onnx::model(&network, &properties)),
         (
             "policy.safetensors",
@@ -163,7 +170,7 @@ mod tests {
         let clip = "observation_clip = 5.0";
         let subject = shipped_with(folder.path(), clip, "observation_clip = 1.5").unwrap();
         assert_eq!(subject.policy().unwrap().clip(), 1.5);
-        let files = files(&subject.kept).unwrap();
+        let files = files(&subject.kept, SelfCollision::On).unwrap();
         let (_, text) = files
             .iter()
             .find(|(name, _)| *name == "policy.json")
@@ -201,7 +208,7 @@ mod tests {
 
     #[test]
     fn the_model_steps_as_the_simulation_does() {
-        let text = model();
+        let text = model(SelfCollision::On);
         assert!(
             text.contains(r#"timestep="0.005" gravity="0 0 -9.81""#),
             "{text}"

@@ -6,12 +6,14 @@
 //! | here | in the file |
 //! | --- | --- |
 //! | τ = kp·(target − q) − kd·q̇, at most the effort | `position` actuators with `forcerange`; `implicitfast` takes kd at the end of the step |
-//! | only soles touch, and only the floor | `contype`/`conaffinity`; friction is the sole's, by `priority` |
+//! | only soles touch the floor | `contype`/`conaffinity`; friction is the sole's, by `priority` |
+//! | limbs and trunk meet in the pairs of [`collision`], without friction | capsules of group 3, a `pair` of `condim` 1 for each |
 //! | rotor inertia at the joint | `armature` |
 //! | bodies as drawn | geoms of group 1 without mass or contact |
 //!
 //! Format: <https://mujoco.readthedocs.io/en/stable/XMLreference.html>.
 
+use crate::collision::{self, CAPSULE_TABLE, PAIRS};
 use crate::links::{FOOT_CENTRE, FOOT_HALF_EXTENTS, LEFT_FOOT, PELVIS, RIGHT_FOOT};
 use crate::shapes::{self, Shape};
 use crate::state::STANDING_HEIGHT;
@@ -27,6 +29,8 @@ pub struct Physics {
     pub gravity: f64,
     /// Friction coefficient between soles and floor.
     pub friction: f64,
+    /// Whether limbs and trunk meet each other; they pass through each other otherwise.
+    pub self_collision: bool,
 }
 
 /// Name of the keyframe in which the robot stands in its default pose, soles on the floor.
@@ -38,6 +42,9 @@ pub fn document(physics: &Physics) -> String {
     head(physics, &mut out).expect("a string takes all that is written");
     body(PELVIS, physics, 2, &mut out).expect("a string takes all that is written");
     out.push_str("  </worldbody>\n");
+    if physics.self_collision {
+        pairs(&mut out).expect("a string takes all that is written");
+    }
     tail(&mut out).expect("a string takes all that is written");
     out
 }
@@ -142,10 +149,38 @@ fn body(index: usize, physics: &Physics, depth: usize, out: &mut String) -> std:
             )?;
         }
     }
+    let meets = |&capsule: &&collision::Capsule| physics.self_collision && capsule.body == index;
+    if let Some(capsule) = CAPSULE_TABLE.iter().find(meets) {
+        let [from, to] = capsule.ends;
+        writeln!(
+            out,
+            r#"{pad}  <geom name="{}" type="capsule" fromto="{} {}" size="{}" contype="0" conaffinity="0" group="3" rgba="0.8 0.3 0.2 0.4"/>"#,
+            geom(capsule.name),
+            numbers(&from),
+            numbers(&to),
+            capsule.radius
+        )?;
+    }
     for child in (0..BODIES).filter(|&child| LINK_TABLE[child].parent == Some(index)) {
         body(child, physics, depth + 1, out)?;
     }
     writeln!(out, "{pad}</body>")
+}
+
+/// Name of a capsule's geom.
+fn geom(capsule: &str) -> String {
+    format!("{}_collision", capsule.replace(' ', "_"))
+}
+
+/// What may touch beside the soles and the floor.
+fn pairs(out: &mut String) -> std::fmt::Result {
+    out.push_str("  <contact>\n");
+    for pair in 0..PAIRS {
+        let [a, b] = collision::names(pair).map(geom);
+        writeln!(out, r#"    <pair geom1="{a}" geom2="{b}" condim="1"/>"#)?;
+    }
+    out.push_str("  </contact>\n");
+    Ok(())
 }
 
 fn tail(out: &mut String) -> std::fmt::Result {

@@ -10,6 +10,7 @@ fn text() -> String {
         timestep: 0.005,
         gravity: 9.81,
         friction: 1.0,
+        self_collision: true,
     })
 }
 
@@ -60,7 +61,43 @@ fn the_tables_come_back_out_of_the_document() {
 }
 
 #[test]
-fn only_soles_and_floor_touch() {
+fn limbs_and_trunk_meet_in_the_pairs_of_the_table() {
+    let text = text();
+    let document = Document::parse(&text).unwrap();
+    let geoms = all(&document, "geom");
+    let named = |name: &str| {
+        let of = |geom: &&Node<'_, '_>| geom.attribute("name") == Some(name);
+        *geoms.iter().find(of).unwrap()
+    };
+    let pairs = all(&document, "pair");
+    assert_eq!(pairs.len(), PAIRS);
+    for (pair, capsules) in pairs.iter().zip(collision::PAIR_TABLE) {
+        assert_eq!(pair.attribute("condim"), Some("1"));
+        for (side, capsule) in ["geom1", "geom2"].into_iter().zip(capsules) {
+            let capsule = &CAPSULE_TABLE[capsule];
+            let geom = named(pair.attribute(side).unwrap());
+            let body = geom.parent().unwrap().attribute("name");
+            assert_eq!(body, Some(LINK_TABLE[capsule.body].name));
+            assert_eq!(attribute::<6>(geom, "fromto")[..], capsule.ends.concat());
+            assert_eq!(attribute(geom, "size"), [capsule.radius]);
+        }
+    }
+    let without = super::document(&Physics {
+        timestep: 0.005,
+        gravity: 9.81,
+        friction: 1.0,
+        self_collision: false,
+    });
+    let document = Document::parse(&without).unwrap();
+    assert_eq!(all(&document, "pair").len(), 0);
+    assert_eq!(
+        all(&document, "geom").len(),
+        geoms.len() - CAPSULE_TABLE.len()
+    );
+}
+
+#[test]
+fn of_all_geoms_only_soles_and_floor_touch() {
     let text = text();
     let document = Document::parse(&text).unwrap();
     let touching: Vec<&str> = all(&document, "geom")

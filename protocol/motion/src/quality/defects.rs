@@ -8,6 +8,7 @@ mod joints;
 mod moves;
 mod posture;
 mod source;
+mod touch;
 mod way;
 
 pub(crate) use source::of as of_source;
@@ -97,6 +98,7 @@ pub(crate) fn all(
             format!("the account beside it is not this clip's: {why}"),
         )),
     });
+    found.extend(touch::of(&clip.frames));
     found.extend(way::backward(clip, &feet));
     found.extend(lies);
     found.extend(ground);

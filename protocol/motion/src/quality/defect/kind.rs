@@ -22,6 +22,8 @@ pub enum Kind {
     Limits,
     /// Joints that rest against a stop.
     Stops,
+    /// Parts of the robot within each other.
+    Touch,
     /// Bones that do not do what the human's did.
     Bones,
     /// A robot that faces away from where it goes.
@@ -62,6 +64,9 @@ impl Kind {
             Self::Limits => "look at units (degrees?) and joint order, or clamp the joints",
             Self::Stops => {
                 "look at units, signs and joint order: a posture that the robot cannot take, or a pose that was never set"
+            }
+            Self::Touch => {
+                "cut the frames, or leave the clip out: legs that cross are further apart on a human than on the robot"
             }
             Self::Bones => {
                 "look at the file: a left-handed one, swapped sides or a broken skeleton; else leave the clip out"

@@ -6,6 +6,7 @@ mod joints;
 mod moves;
 mod sound;
 mod sources;
+mod touch;
 mod whole;
 
 use super::super::severity;
