@@ -1,7 +1,8 @@
 """States, observations and a flight in MuJoCo that rapier is compared with.
 
 `python -m transfer.reference EXPORT FILE` (in `deploy/`) writes `actor/sim/tests/mujoco.json`, which a test of
-`sim` reads: both simulators start from the same states, see the same, and move alike in the air.
+`sim` reads: both simulators start from the same states, see the same, and move alike in the air. EXPORT is one with
+`--self-collision off`, for contacts of two engines are two models.
 """
 
 import json

@@ -1,13 +1,13 @@
 //! The same states and the same flight in MuJoCo, as `deploy/transfer/reference.py` wrote them.
 //!
-//! Contact is left out: two engines' contacts are two models, while what they see of a state and how free bodies and
+//! Contact is left out, that of the robot with itself too: two engines' contacts are two models, while what they see of a state and how free bodies and
 //! motors move has one answer.
 
 use g1::{JOINTS, OBSERVATION, RobotState, state};
 use serde_json::Value;
 use sim::{
-    CommandConfig, FallConfig, Fleet, Physics, RandomizationConfig, StartConfig, Starts, StepRows,
-    TaskConfig, TerminationConfig, TimeOutConfig,
+    CommandConfig, FallConfig, Fleet, Mechanics, Physics, RandomizationConfig, StartConfig, Starts,
+    StepRows, TaskConfig, TerminationConfig, TimeOutConfig,
 };
 
 const ENGINES: [Physics; 2] = [Physics::Rapier, Physics::Batched];
@@ -62,7 +62,10 @@ fn placed(physics: Physics, flight: &Value) -> Fleet {
     };
     let starts: Starts = [(start, command, 1.0)].into_iter().collect();
     let mut fleet = Fleet::new(
-        physics,
+        Mechanics {
+            physics,
+            self_collision: false,
+        },
         &task,
         &RandomizationConfig::default(),
         starts,
