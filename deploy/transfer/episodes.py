@@ -54,7 +54,7 @@ class Randomization:
         if self.table is None:
             return values
         row = SENSORS.get(term["name"])
-        least, greatest = self.table[row] if row else (0.0, 0.0)
+        least, greatest = self.table[row]["range"] if row else (0.0, 0.0)
         noise = term["noise"]
         return values + self.random.uniform(least - noise, greatest + noise, np.shape(values))
 
