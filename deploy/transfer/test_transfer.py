@@ -58,6 +58,8 @@ class Model(unittest.TestCase):
 
     def test_reference_is_what_this_model_does(self):
         stored = json.loads(REFERENCE.read_text())
+        # It was made in the air and without contact of the robot with itself.
+        self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
         built = reference.build(self.model, self.policy)
         for old, new in zip(stored["flights"], built["flights"], strict=True):
             np.testing.assert_allclose(new["observation"], old["observation"], atol=1e-9)
