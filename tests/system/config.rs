@@ -69,6 +69,23 @@ fn what_is_printed_is_a_preset_of_the_same_values() {
 }
 
 #[test]
+fn a_difference_is_a_preset_on_the_other() {
+    let config = Config::new();
+    for (one, other) in [
+        ("ampco", "agile"),
+        ("agile", "ampco"),
+        ("recipe", "ampco-literal"),
+        ("ampco-literal", "recipe"),
+        ("athlete", "smoke"),
+        ("amp-0.5", "ampco"),
+    ] {
+        let file = config.write("between.toml", &config.said(&[one, "--diff", other]));
+        let same = config.said(&[&file, "--diff", one]);
+        assert!(same.contains("do not differ"), "{one}, {other}: {same}");
+    }
+}
+
+#[test]
 fn two_configurations_are_told_apart_key_by_key() {
     let config = Config::new();
     config.write(
@@ -76,11 +93,12 @@ fn two_configurations_are_told_apart_key_by_key() {
         "on = \"smoke\"\nunset = [\"fleet.actors\"]\n[ppo]\nepochs = 3\n",
     );
     let told = config.said(&["mine.toml", "--diff", "smoke"]);
-    let lines: Vec<&str> = told
+    let mut lines: Vec<&str> = told
         .lines()
         .filter(|line| line.contains(" = ") && !line.starts_with('#'))
         .collect();
-    assert_eq!(lines.len(), 2, "{told}");
+    assert_eq!(lines.len(), 3, "{told}");
+    assert_eq!(lines.remove(0), "on = \"smoke\"");
     assert!(lines[0].starts_with("actors = 0 # default"), "{told}");
     assert!(
         lines[1].starts_with("epochs = 3 # ") && lines[1].ends_with("mine.toml"),
@@ -167,7 +185,19 @@ fn keys_are_counted() {
     assert!((60..=110).contains(&count), "{count} keys");
     let json: Value = serde_json::from_str(&config.said(&["--count", "--json"])).expect("JSON");
     assert_eq!(json["keys"], count);
-    assert!(!config.run(&["agile", "--count"]).0);
+    let of = |name| {
+        config
+            .said(&[name, "--count"])
+            .trim()
+            .parse::<usize>()
+            .expect("a number")
+    };
+    // A preset has no keys of terms that it does not list.
+    assert!(of("ampco") < count && of("smoke") < count);
+    assert_eq!(
+        config.said(&["agile", "--diff", "agile", "--count"]).trim(),
+        "0"
+    );
 }
 
 #[test]

@@ -9,6 +9,7 @@ use std::path::Path;
 
 use anyhow::Result;
 use clap::Args;
+use configuration::keys::Key;
 use configuration::{keys, presets, resolve};
 use run::Config;
 use serde_json::json;
@@ -17,7 +18,7 @@ use terminal::{Place, console};
 
 /// Show a configuration: every value, what it is for, its unit, and where it was given
 ///
-/// What is printed is TOML: as a file it is a preset. Names after # are a value's unit and where it was given: a preset, a
+/// What is printed is TOML: as a file it is a preset; with --diff one on the other, if that is no run. Names after # are a value's unit and where it was given: a preset, a
 /// file, a run, or nowhere (default).
 #[derive(Debug, Args)]
 pub(crate) struct Show {
@@ -27,9 +28,9 @@ pub(crate) struct Show {
     /// Only what is another in this one
     #[arg(long, value_name = "PRESET|FILE|RUN")]
     diff: Option<String>,
-    /// Only how many keys there are. A list is one, so is a value that moves or a method with its parameters; what each
-    /// of several terms has, as the weight of a reward, is one for all of them
-    #[arg(long, conflicts_with_all = ["of", "diff"])]
+    /// Only how many keys there are, or would be shown, besides lists. A value that moves is one, so is a method with its
+    /// parameters; what each of several terms has, as the weight of a reward, is one for all of them
+    #[arg(long)]
     count: bool,
     /// As JSON
     #[arg(long)]
@@ -42,6 +43,8 @@ pub(crate) struct Show {
 struct Shown {
     /// `preset ampco`, a file's path, `run walk`.
     name: String,
+    /// What a preset that lies on it would say; a run is none.
+    on: Option<String>,
     config: Config,
     /// What is to be said of values that the run's own file holds.
     run: Option<String>,
@@ -50,23 +53,32 @@ struct Shown {
 impl Show {
     pub(crate) fn run(&self) -> Result<()> {
         let keys = keys::all();
-        if self.count {
-            let count = keys::count(&keys);
-            let lists = keys.iter().filter(|key| key.list).count();
-            return console::print(&if self.json {
-                format!("{}\n", json!({ "keys": count, "lists": lists }))
-            } else {
-                format!("{count}\n")
-            });
-        }
         let shown = self.open(self.of.as_deref().unwrap_or("ampco"))?;
         let other = self.diff.as_deref().map(|name| self.open(name));
         let other = other.transpose()?;
         let entries = show::entries(&keys, &shown, other.as_ref());
+        if self.count {
+            let all = self.of.is_none() && other.is_none();
+            return self.tell_count(if all {
+                keys.iter().collect()
+            } else {
+                entries.iter().map(|entry| entry.key).collect()
+            });
+        }
         console::print(&if self.json {
             show::json(&entries, &shown, other.as_ref())
         } else {
             show::toml(&entries, &shown, other.as_ref())
+        })
+    }
+
+    fn tell_count(&self, keys: Vec<&Key>) -> Result<()> {
+        let lists = keys.iter().filter(|key| key.list).count();
+        let count = keys::count(keys);
+        console::print(&if self.json {
+            format!("{}\n", json!({ "keys": count, "lists": lists }))
+        } else {
+            format!("{count}\n")
         })
     }
 
@@ -82,6 +94,7 @@ impl Show {
             let preset = presets::find(given)?;
             return Ok(Shown {
                 name: preset.origin,
+                on: Some(given.to_owned()),
                 config: preset.config,
                 run: None,
             });
@@ -102,12 +115,18 @@ impl Show {
         Ok(Shown {
             config: folder.config()?,
             run: Some(name.clone()),
+            on: None,
             name,
         })
     }
 }
 
 impl Shown {
+    /// Whether anything of a table is given.
+    fn has(&self, table: &str) -> bool {
+        self.config.given(table).is_some()
+    }
+
     /// In words, where a value was given.
     fn origin(&self, path: &str) -> String {
         let origins = self.config.origins(path);

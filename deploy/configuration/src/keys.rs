@@ -41,9 +41,9 @@ impl Key {
 }
 
 /// How many keys there are besides lists, by `--count`.
-pub fn count(keys: &[Key]) -> usize {
+pub fn count<'a>(keys: impl IntoIterator<Item = &'a Key>) -> usize {
     let counted: std::collections::BTreeSet<&str> = keys
-        .iter()
+        .into_iter()
         .filter(|key| !key.list)
         .map(|key| key.counted.as_str())
         .collect();

@@ -13,10 +13,10 @@ use observation::Tables;
 use vocabulary::Section;
 
 /// What a fleet is of, whatever it does.
-struct Make {
-    mechanics: Mechanics,
-    gains: Gains,
-    tables: Tables,
+pub(super) struct Make {
+    pub(super) mechanics: Mechanics,
+    pub(super) gains: Gains,
+    pub(super) tables: Tables,
 }
 
 impl Fleet {
@@ -30,15 +30,14 @@ impl Fleet {
         environments: usize,
         seed: u64,
     ) -> Result<Self, SimError> {
-        let gains = Gains::of_the_robot();
-        Self::with_gains(
+        Self::seen_by(
+            &Tables::default(),
             mechanics,
             task,
             randomization,
             starts,
             environments,
             seed,
-            gains,
         )
     }
 
@@ -60,25 +59,7 @@ impl Fleet {
         Self::build(make, task, randomization, starts, environments, seed)
     }
 
-    /// With motors of other gains than the robot's.
-    pub fn with_gains(
-        mechanics: impl Into<Mechanics>,
-        task: &TaskConfig,
-        randomization: &RandomizationConfig,
-        starts: Starts,
-        environments: usize,
-        seed: u64,
-        gains: Gains,
-    ) -> Result<Self, SimError> {
-        let make = Make {
-            mechanics: mechanics.into(),
-            gains,
-            tables: Tables::default(),
-        };
-        Self::build(make, task, randomization, starts, environments, seed)
-    }
-
-    fn build(
+    pub(super) fn build(
         make: Make,
         task: &TaskConfig,
         randomization: &RandomizationConfig,

@@ -8,7 +8,7 @@ use super::Shown;
 
 /// A key with its value, and that of another configuration.
 pub(super) struct Entry<'a> {
-    key: &'a Key,
+    pub(super) key: &'a Key,
     value: Option<&'a Value>,
     other: Option<&'a Value>,
 }
@@ -28,7 +28,7 @@ pub(super) fn entries<'a>(
         let told = match other {
             Some(_) => entry.value != entry.other,
             // Of terms that are not listed there is nothing to say.
-            None => shown.config.given(key.parts().0).is_some(),
+            None => shown.has(key.parts().0),
         };
         told.then_some(entry)
     };
@@ -44,11 +44,20 @@ pub(super) fn toml(entries: &[Entry<'_>], shown: &Shown, other: Option<&Shown>) 
         }
         Some(other) => format!("# {}, where it differs from {}.\n", shown.name, other.name),
     };
+    if let Some(on) = other.and_then(|other| other.on.as_ref()) {
+        text.push_str(&format!("on = {}\n", Value::from(on.as_str())));
+        let unset = unset(entries, shown);
+        if !unset.is_empty() {
+            text.push_str(&format!("unset = {}\n", Value::from(unset)));
+        }
+    }
     let mut table = "";
     for entry in entries {
         let (place, name) = entry.key.parts();
         if place != table {
-            text.push_str(&format!("\n[{place}]\n"));
+            // A header alone would list a term.
+            let hidden = if shown.has(place) { "" } else { "# " };
+            text.push_str(&format!("\n{hidden}[{place}]\n"));
             table = place;
         }
         text.push_str(&format!("# {}\n", entry.key.sentence()));
@@ -73,6 +82,23 @@ pub(super) fn toml(entries: &[Entry<'_>], shown: &Shown, other: Option<&Shown>) 
         text.push_str(&format!("{name} = {} # {unit}{origin}\n", written(value)));
     }
     text
+}
+
+/// What the other configuration has and this one has not: keys, or whole tables of them.
+fn unset(entries: &[Entry<'_>], shown: &Shown) -> Vec<String> {
+    let mut unset: Vec<String> = Vec::new();
+    for entry in entries.iter().filter(|entry| entry.value.is_none()) {
+        let (place, _) = entry.key.parts();
+        let path = if shown.has(place) {
+            &entry.key.path
+        } else {
+            place
+        };
+        if !unset.iter().any(|known| known == path) {
+            unset.push(path.to_owned());
+        }
+    }
+    unset
 }
 
 /// A value as TOML; a list of tables with a line for each.

@@ -1,6 +1,8 @@
 //! Where episodes begin and how they end.
 
 use super::*;
+use crate::fleet::make::Make;
+use ::observation::Tables;
 use nalgebra::UnitQuaternion;
 use std::f32::consts::FRAC_PI_3;
 use vocabulary::Ramp;
@@ -47,16 +49,12 @@ fn limp_robots_fall_and_their_episode_ends() {
     gains.effort = [0.0; JOINTS];
     let task = TaskConfig::default();
     let none = RandomizationConfig::default();
-    let mut fleet = Fleet::with_gains(
-        Physics::Rapier,
-        &task,
-        &none,
-        Starts::default(),
-        1,
-        4,
+    let make = Make {
+        mechanics: Physics::Rapier.into(),
         gains,
-    )
-    .unwrap();
+        tables: Tables::default(),
+    };
+    let mut fleet = Fleet::build(make, &task, &none, Starts::default(), 1, 4).unwrap();
     let fall = (0..100)
         .map(|_| step(&mut fleet, &[0.0; ACTION]))
         .find(|out| out.ends[0] != 0.0)
