@@ -19,7 +19,7 @@ use tracing::{info, warn};
 use crate::config::LearnerConfig;
 use crate::earned::Earned;
 use crate::guidance::Guide;
-use crate::robot;
+use crate::robot::{self, robot};
 
 /// This shell's own share of a checkpoint.
 const SHELL: &str = "shell.json";
@@ -175,12 +175,20 @@ impl State {
         let generator = &mut self.generator;
         let judge = &config.learning.discriminator;
         let features = config.experts.width();
+        let place = robot::place(config.tables.places().command);
+        let told = |generator: &mut Pcg64Mcg| {
+            let row = generator.random_range(0..batch.rows());
+            [0, 1, 2].map(|i| batch.at(row, &place)[i])
+        };
         let mut experts = |rows: &mut [f32]| {
             for row in rows.chunks_exact_mut(judge.width(features)) {
                 let (states, seen) = row.split_at_mut(judge.frames * features);
-                let command = config
-                    .experts
-                    .sample_window(generator, judge.spacing, states);
+                let (data, spacing) = (&config.experts, judge.spacing);
+                let command = if data.is_drawn_by_commands() {
+                    data.sample_window_near(told(generator), generator, spacing, states)
+                } else {
+                    data.sample_window(generator, spacing, states)
+                };
                 for (i, blur) in judge.command_blur.iter().flatten().enumerate() {
                     seen[i] = command[i] + generator.random_range(-blur..=*blur);
                 }
@@ -200,6 +208,7 @@ impl State {
                 samples: batch.rows() as u64,
                 style_mean: report.style_mean,
                 style_std: report.style_std,
+                style_std_robots: report.style_std_robots,
                 style_min: report.style_min,
                 style_max: report.style_max,
                 task_mean: report.task_mean,

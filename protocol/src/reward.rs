@@ -36,6 +36,9 @@ pub struct RewardReport {
     pub style_mean: f64,
     /// σˢ, standard deviation of the style reward.
     pub style_std: f64,
+    /// Standard deviation over the robots of each one's mean style reward; NaN where it is not known.
+    #[serde(default = "number::unknown", deserialize_with = "number::or_nan")]
+    pub style_std_robots: f64,
     /// Smallest style reward.
     pub style_min: f64,
     /// Largest style reward.
@@ -221,6 +224,14 @@ mod tests {
             "style_min":0.0,"style_max":1.0,"task_mean":0.75}"#;
         let report: RewardReport = serde_json::from_str(text).unwrap();
         assert_eq!((report.iteration, report.task_mean), (2, 0.75));
-        assert!(report.task_std.is_nan() && report.episode_share.is_nan());
+        assert!(
+            [
+                report.style_std_robots,
+                report.task_std,
+                report.episode_share
+            ]
+            .iter()
+            .all(|x| x.is_nan())
+        );
     }
 }

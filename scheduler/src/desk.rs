@@ -75,6 +75,7 @@ mod tests {
             iteration,
             style_mean: iteration.min(10) as f64 / 16.0,
             style_std: 0.125,
+            style_std_robots: Some(iteration as f64 / 300.0),
             task_mean: 0.5,
             episode_share: Some(iteration as f64 / 100.0),
         }

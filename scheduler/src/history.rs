@@ -57,6 +57,7 @@ mod tests {
             iteration,
             style_mean,
             style_std: 0.1 / 3.0,
+            style_std_robots: Some(0.1 / 7.0),
             task_mean: 0.5,
             episode_share: Some(iteration as f64 / 7.0),
         }
@@ -67,12 +68,13 @@ mod tests {
             iteration,
             style_mean,
             style_std,
+            style_std_robots,
             task_mean,
             episode_share,
         } = report;
         let line = serde_json::json!({
             "iteration": iteration, "episode_length": 12.5, "style_mean": style_mean, "style_std": style_std,
-            "task_mean": task_mean, "episode_share": episode_share
+            "style_std_robots": style_std_robots, "task_mean": task_mean, "episode_share": episode_share
         });
         format!("{line}\n")
     }

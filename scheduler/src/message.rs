@@ -9,6 +9,7 @@ pub(crate) fn report(message: &RewardReport) -> Report {
         iteration: message.iteration,
         style_mean: message.style_mean,
         style_std: message.style_std,
+        style_std_robots: Some(message.style_std_robots).filter(|std| !std.is_nan()),
         task_mean: message.task_mean,
         episode_share: Some(message.episode_share).filter(|share| !share.is_nan()),
     }
@@ -98,14 +99,18 @@ mod tests {
             iteration: 3,
             style_mean: 0.5,
             episode_share: f64::NAN,
+            style_std_robots: f64::NAN,
             ..RewardReport::default()
         };
         assert_eq!(report(&message).episode_share, None);
+        assert_eq!(report(&message).style_std_robots, None);
         assert_eq!(report(&message).style_mean, 0.5);
         let ended = RewardReport {
             episode_share: 0.25,
+            style_std_robots: 0.125,
             ..message
         };
         assert_eq!(report(&ended).episode_share, Some(0.25));
+        assert_eq!(report(&ended).style_std_robots, Some(0.125));
     }
 }

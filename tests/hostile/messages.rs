@@ -234,6 +234,7 @@ fn the_schedule_bears_any_report() {
                 iteration,
                 style_mean,
                 style_std,
+                style_std_robots: Some(task_mean),
                 task_mean,
                 episode_share: Some(style_std),
             };

@@ -58,7 +58,7 @@ impl LearnersPart {
             .and_then(|mut metrics| {
                 metrics.append(&json!({
                     "iteration": iteration, "style_mean": style_mean,
-                    "style_std": style_std, "task_mean": task_mean,
+                    "style_std": style_std, "style_std_robots": 0.02, "task_mean": task_mean,
                 }))
             })
             .expect("a line");
@@ -66,6 +66,7 @@ impl LearnersPart {
             iteration,
             style_mean,
             style_std,
+            style_std_robots: 0.02,
             task_mean,
             ..RewardReport::default()
         };
@@ -105,6 +106,7 @@ fn the_scheduler_switches_where_the_paper_says_also_across_its_own_death() {
                 iteration,
                 style_mean: style(iteration),
                 style_std: 0.05,
+                style_std_robots: Some(0.02),
                 task_mean: 0.5,
                 episode_share: Some(0.0),
             })

@@ -78,6 +78,7 @@ impl SchedulerBench {
             iteration,
             style_mean: rng.random_range(0.2..0.4),
             style_std: 0.1,
+            style_std_robots: None,
             task_mean: 0.5,
             episode_share: None,
         };

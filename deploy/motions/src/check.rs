@@ -139,7 +139,7 @@ fn show(
     if !rare.is_empty() {
         writeln!(
             out,
-            "unbalanced: draw every speed alike with --set motion.stratify=true, or add clips"
+            "unbalanced: draw every speed alike with --set motion.draw=speeds, or add clips"
         )?;
     }
     for (name, defects) in &faults.clips {

@@ -215,6 +215,19 @@ impl Batch {
             .sum()
     }
 
+    /// Each robot's mean of `numbers`, `[row]`, over its steps of a rollout; rollout by rollout.
+    pub(crate) fn means_of_robots(&self, numbers: &[f32]) -> Vec<f32> {
+        let rollout = |index| {
+            let (rows, robots) = self.place(index);
+            let (steps, numbers) = (self.segments[index].steps, &numbers[rows]);
+            (0..robots.len()).map(move |robot| {
+                let own = numbers.iter().skip(robot).step_by(robots.len());
+                own.sum::<f32>() / steps as f32
+            })
+        };
+        (0..self.segments.len()).flat_map(rollout).collect()
+    }
+
     /// Where rollout `index` lies among rows and among environments.
     fn place(&self, index: usize) -> (std::ops::Range<usize>, std::ops::Range<usize>) {
         let before = &self.segments[..index];

@@ -219,6 +219,7 @@ impl Learning {
             rows: batch.rows() as u64,
             style_mean: style[0],
             style_std: style[1],
+            style_std_robots: moments(&batch.means_of_robots(&self.scratch.style_rewards))[1],
             style_min: style[2],
             style_max: style[3],
             task_mean: task[0],

@@ -18,9 +18,22 @@ pub struct MotionConfig {
     pub clips: Vec<ClipConfig>,
     /// Whether every clip is also shown mirrored, left for right. Default: true.
     pub mirror: bool,
-    /// Whether transitions are drawn so that every quarter of a metre per second has the same share,
-    /// however much motion there is at it. Default: false, then the weights of clips decide.
-    pub stratify: bool,
+    /// What decides how often motion is shown to the discriminator. Default: the weights of clips.
+    pub draw: Draw,
+}
+
+/// What decides how often motion is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Draw {
+    /// The weights of clips.
+    #[default]
+    Weights,
+    /// Every quarter of a metre per second has the same share, however much motion there is at it.
+    Speeds,
+    /// What the policy is told at the time: motion of a command is shown as often as robots have that command or one near
+    /// it. A discriminator that sees commands would else know reference motion by which commands are rare in it.
+    Commands,
 }
 
 /// One clip or a folder of them: a built-in gait, a file or a folder, never two of these.
@@ -127,7 +140,7 @@ impl Default for MotionConfig {
                 walk(1.2, 1.0),
             ],
             mirror: true,
-            stratify: false,
+            draw: Draw::Weights,
         }
     }
 }

@@ -8,7 +8,7 @@ mod source;
 pub use source::Reference;
 
 use crate::clip::Clip;
-use crate::config::MotionConfig;
+use crate::config::{Draw, MotionConfig};
 use crate::error::MotionError;
 use crate::strata::Strata;
 use g1::RobotState;
@@ -35,7 +35,12 @@ pub struct Dataset {
     starts: Vec<usize>,
     /// Shares of transitions, if every speed counts alike.
     strata: Option<Strata>,
+    by_commands: bool,
 }
+
+/// How far apart two commands are that motion of one passes for motion of the other: m/s forward, m/s aside, rad/s. About as
+/// far as the commands of neighbouring built-in gaits in the presets.
+const NEAR: [f32; 3] = [0.15, 0.1, 0.25];
 
 impl Dataset {
     /// Makes or reads the clips of a configuration; relative paths start at `base_dir`.
@@ -53,10 +58,13 @@ impl Dataset {
             clips.push(clip);
         }
         let data = Self::of(clips);
-        Ok(if config.stratify {
-            data.stratified()
-        } else {
-            data
+        Ok(match config.draw {
+            Draw::Weights => data,
+            Draw::Speeds => data.stratified(),
+            Draw::Commands => Self {
+                by_commands: true,
+                ..data
+            },
         })
     }
 
@@ -110,6 +118,7 @@ impl Dataset {
             velocities: Vec::new(),
             starts: Vec::with_capacity(clips.len()),
             strata: None,
+            by_commands: false,
             clips,
         };
         let (mut weight, mut frames) = (0.0, 0);
@@ -174,6 +183,42 @@ impl Dataset {
             })
     }
 
+    /// Whether the policy's commands decide which motion is drawn, see [`Self::sample_window_near`].
+    pub fn is_drawn_by_commands(&self) -> bool {
+        self.by_commands
+    }
+
+    /// Draws a window as [`Self::sample_window`] does, of a clip whose command is near one: with weight w and at a distance of
+    /// d times [`NEAR`], in proportion to w·exp(−d²/2).
+    ///
+    /// # Panics
+    /// If `out` is not as long as two states or more.
+    pub fn sample_window_near(
+        &self,
+        command: [f32; 3],
+        rng: &mut impl Rng,
+        spacing: usize,
+        out: &mut [f32],
+    ) -> [f32; 3] {
+        let far = |clip: &Clip| {
+            let apart = clip.command.iter().zip(command).zip(NEAR);
+            let squares = apart.map(|((a, b), near)| ((a - b) / near).powi(2));
+            squares.sum::<f32>()
+        };
+        let nearest = self.clips.iter().map(far).fold(f32::INFINITY, f32::min);
+        // The nearest counts in full, however far it is.
+        let share = |clip: &Clip| clip.weight * (0.5 * (nearest - far(clip))).exp();
+        let mut left = rng.random::<f32>() * self.clips.iter().map(share).sum::<f32>();
+        let drawn = self.clips.iter().position(|clip| {
+            left -= share(clip);
+            left < 0.0
+        });
+        // Rounding may leave some.
+        let index = drawn.unwrap_or(self.clips.len() - 1);
+        let end = rng.random_range(0..self.clips[index].transitions());
+        self.window(index, end, spacing, out)
+    }
+
     /// Draws a window of motion: what is seen of states `spacing` steps apart, oldest first; every
     /// transition is equally often its end. In a cyclic clip the first frame follows the last; before
     /// the first frame of another clip there is nothing but that frame. Allocates nothing.
@@ -184,12 +229,6 @@ impl Dataset {
     /// # Panics
     /// If `out` is not as long as two states or more.
     pub fn sample_window(&self, rng: &mut impl Rng, spacing: usize, out: &mut [f32]) -> [f32; 3] {
-        let width = self.width;
-        let steps = out.len() / width;
-        assert!(
-            steps >= 2 && out.len().is_multiple_of(width),
-            "a window has {width} numbers for each of two states or more"
-        );
         let (index, i) = match &self.strata {
             Some(strata) => strata.draw(rng),
             None => {
@@ -197,6 +236,17 @@ impl Dataset {
                 (index, rng.random_range(0..self.clips[index].transitions()))
             }
         };
+        self.window(index, i, spacing, out)
+    }
+
+    /// The window that ends with transition `i` of a clip, and its command.
+    fn window(&self, index: usize, i: usize, spacing: usize, out: &mut [f32]) -> [f32; 3] {
+        let width = self.width;
+        let steps = out.len() / width;
+        assert!(
+            steps >= 2 && out.len().is_multiple_of(width),
+            "a window has {width} numbers for each of two states or more"
+        );
         let clip = &self.clips[index];
         let length = clip.frames.len();
         let mut sums = [0.0; 3];

@@ -18,7 +18,7 @@ pub mod strata;
 mod velocity;
 
 pub use clip::{Clip, FRAME_SECONDS};
-pub use config::{ClipConfig, Gait, MotionConfig, QuaternionOrder};
+pub use config::{ClipConfig, Draw, Gait, MotionConfig, QuaternionOrder};
 pub use dataset::Dataset;
 pub use error::MotionError;
 pub use quality::Quality;

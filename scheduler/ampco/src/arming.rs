@@ -125,6 +125,7 @@ mod tests {
             iteration: 1,
             style_mean,
             style_std: 0.0,
+            style_std_robots: None,
             task_mean: 0.0,
             episode_share,
         }

@@ -71,6 +71,8 @@ pub enum BoundsSource {
     Batch,
     /// The W mean rewards in the window.
     Window,
+    /// The robots of that batch, each with its mean reward: how far gaits differ, not how far the steps of one gait do.
+    Robots,
 }
 
 /// Largest window accepted: its memory is taken at once, about 50 bytes an iteration.

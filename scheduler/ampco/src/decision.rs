@@ -64,7 +64,7 @@ pub enum Warning {
     /// The style reward, 0 to 1, reaches neither bound of Eq. 13.
     #[error(
         "the bounds of Eq. 13, {lower:.3} and {upper:.3}, are wider than the style reward's range, 0 to 1: they bind nothing; \
-         a lower scheduler.alpha or bounds_from = \"window\" makes them narrower"
+         bounds_from = \"robots\" or \"window\", or a lower scheduler.alpha, makes them narrower"
     )]
     BoundsAreIdle {
         /// μ lower.

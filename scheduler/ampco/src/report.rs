@@ -15,6 +15,8 @@ pub struct Report {
     /// σˢ, standard deviation of the style reward over the same transitions.
     #[serde(default = "number::unknown", deserialize_with = "number::or_nan")]
     pub style_std: f64,
+    /// Standard deviation over the robots of each one's mean style reward; none if that is not known.
+    pub style_std_robots: Option<f64>,
     /// Mean task reward over the same transitions.
     #[serde(default = "number::unknown", deserialize_with = "number::or_nan")]
     pub task_mean: f64,
@@ -36,10 +38,12 @@ pub enum ReportError {
         value: f64,
     },
     /// A standard deviation below zero.
-    #[error("style_std of iteration {iteration} is {value}, below zero")]
+    #[error("{field} of iteration {iteration} is {value}, below zero")]
     NegativeDeviation {
         /// Iteration of the report.
         iteration: u64,
+        /// Field of [`Report`].
+        field: &'static str,
         /// Its value.
         value: f64,
     },
@@ -59,6 +63,7 @@ impl Report {
         for (field, value) in [
             ("style_mean", self.style_mean),
             ("style_std", self.style_std),
+            ("style_std_robots", self.style_std_robots.unwrap_or(0.0)),
             ("task_mean", self.task_mean),
             ("episode_share", self.episode_share.unwrap_or(0.0)),
         ] {
@@ -70,11 +75,17 @@ impl Report {
                 });
             }
         }
-        if self.style_std < 0.0 {
-            return Err(ReportError::NegativeDeviation {
-                iteration,
-                value: self.style_std,
-            });
+        for (field, value) in [
+            ("style_std", self.style_std),
+            ("style_std_robots", self.style_std_robots.unwrap_or(0.0)),
+        ] {
+            if value < 0.0 {
+                return Err(ReportError::NegativeDeviation {
+                    iteration,
+                    field,
+                    value,
+                });
+            }
         }
         match newest {
             Some(newest) if iteration <= newest => {

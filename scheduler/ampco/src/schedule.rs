@@ -29,8 +29,8 @@ impl Schedule {
             phase: Phase::One,
             arming: Arming::new(&config),
             detector: Detector::new(config.window, config.percentile),
-            style_ceiling: Ceiling::new(config.ceiling),
-            task_ceiling: Ceiling::new(config.ceiling),
+            style_ceiling: Ceiling::of_style(config.ceiling),
+            task_ceiling: Ceiling::of_task(config.ceiling),
             newest: None,
             config,
         })
@@ -122,6 +122,10 @@ impl Schedule {
         let window = self.detector.rewards();
         let (mean, deviation) = match self.config.bounds_from {
             BoundsSource::Batch => (report.style_mean, report.style_std),
+            BoundsSource::Robots => (
+                report.style_mean,
+                report.style_std_robots.unwrap_or(report.style_std),
+            ),
             BoundsSource::Window => (
                 window.mean().unwrap_or(report.style_mean),
                 window.deviation().unwrap_or(report.style_std),

@@ -72,7 +72,7 @@ impl Learner {
         let report = report(iteration);
         let line = json!({
             "iteration": iteration, "style_mean": report.style_mean, "style_std": report.style_std,
-            "task_mean": report.task_mean
+            "style_std_robots": report.style_std_robots, "task_mean": report.task_mean
         });
         self.metrics.append(&line).unwrap();
         self.rewards.send(report).unwrap();

@@ -70,3 +70,13 @@ fn what_is_not_finite_is_named() {
         })
     ));
 }
+
+#[test]
+fn a_robot_s_mean_is_over_its_own_rows() {
+    let mut batch = Batch::default();
+    batch.add_segment(2, 2);
+    batch.add_segment(1, 1);
+    // Rows go robot by robot within a step: the first robot has 0.25 and 0.75, the second 0.5 and 1.
+    let means = batch.means_of_robots(&[0.25, 0.5, 0.75, 1.0, 0.125]);
+    assert_eq!(means, [0.5, 0.75, 0.125]);
+}

@@ -247,3 +247,26 @@ fn clips_are_seen_as_a_list_says_and_obey_what_they_obeyed() {
         assert_eq!([a[0], a[FEATURES]], [b[15], b[31]]);
     }
 }
+
+#[test]
+fn motion_near_a_command_is_drawn_in_its_place() {
+    let walk = |speed| gait::walk(speed).expect("a gait");
+    let mut data = Dataset::of(vec![walk(0.4), walk(0.7), gait::stand()]);
+    assert!(!data.is_drawn_by_commands());
+    data.by_commands = true;
+    let mut rng = Pcg64Mcg::seed_from_u64(7);
+    let mut out = [0.0; 2 * FEATURES];
+    let mut count = |command: [f32; 3], speed: f32| {
+        let drawn = (0..4000).map(|_| data.sample_window_near(command, &mut rng, 1, &mut out));
+        drawn.filter(|told| (told[0] - speed).abs() < 1e-3).count()
+    };
+    // 0.7 is 0.3 = two times 0.15 away: e⁻² = 0.135 for 1 at 0.4, and 0.029 for standing, 2.67 times away: .135/1.164 of
+    // 4,000 is 465, σ = 20.
+    let slower = count([0.4, 0.0, 0.0], 0.7);
+    assert!((385..545).contains(&slower), "{slower}");
+    // Halfway they are alike, and standing has e^(−6.7 + 0.5) of it.
+    let half = count([0.55, 0.0, 0.0], 0.4);
+    assert!((1870..2130).contains(&half), "{half}");
+    // However far all of it is, the nearest is shown.
+    assert!(count([9.0, 0.0, 3.0], 0.7) == 4000);
+}

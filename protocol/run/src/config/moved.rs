@@ -1,7 +1,8 @@
 //! Keys that are spelt otherwise now: an older file is refused with the new spelling.
 
 /// Section and key as they were, and how the same is said now.
-const MOVED: [(&str, &str, &str); 30] = [
+const MOVED: [(&str, &str, &str); 31] = [
+    ("motion", "stratify", "motion.draw = \"speeds\""),
     ("task", "physics", "fleet.physics = \"batched\""),
     ("task", "kernel", "task.reward.track.kernel = 2.0"),
     ("task", "wide_kernel", "task.reward.track_wide.kernel = 2.0"),

@@ -34,6 +34,7 @@ const ROWS: [(&str, &[(&str, &str)]); 9] = [
 pub(super) fn in_todays_words(table: &mut Table) {
     physics(table);
     self_collision(table);
+    draw(table);
     for (path, now) in GONE {
         if now != "none" {
             drop_same(table, path, now);
@@ -77,6 +78,19 @@ fn self_collision(table: &mut Table) {
             .entry("self_collision")
             .or_insert(Value::Boolean(false));
     }
+}
+
+/// `motion.stratify` is a way to draw.
+fn draw(table: &mut Table) {
+    let Some(Value::Table(motion)) = table.get_mut("motion") else {
+        return;
+    };
+    let Some(Value::Boolean(even)) = motion.get("stratify") else {
+        return;
+    };
+    let by = if *even { "speeds" } else { "weights" };
+    motion.remove("stratify");
+    motion.entry("draw").or_insert(by.into());
 }
 
 /// A row that was switched on is a table; one that was not is none.
@@ -126,6 +140,21 @@ mod tests {
         assert_eq!(said("[fleet]\nsteps = 8"), Some(false));
         assert_eq!(said("[fleet]\nself_collision = true"), Some(true));
         assert_eq!(said("[fleet]\nself_collision = false"), Some(false));
+    }
+
+    #[test]
+    fn motion_is_drawn_as_it_was() {
+        let said = |text| today(text)["motion"].as_table().unwrap().clone();
+        assert_eq!(
+            said("[motion]\nstratify = true")["draw"].as_str(),
+            Some("speeds")
+        );
+        assert_eq!(
+            said("[motion]\nstratify = false")["draw"].as_str(),
+            Some("weights")
+        );
+        assert!(!said("[motion]\nstratify = true").contains_key("stratify"));
+        assert!(said("[motion]\nmirror = true").get("draw").is_none());
     }
 
     #[test]

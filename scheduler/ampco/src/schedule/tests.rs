@@ -14,6 +14,7 @@ fn report(iteration: u64, style_mean: f64) -> Report {
         iteration,
         style_mean,
         style_std: 0.125,
+        style_std_robots: Some(0.0625),
         task_mean: 0.5,
         episode_share: None,
     }
@@ -107,6 +108,18 @@ fn bounds_can_come_from_the_window_means() {
     let bounds = run(&config, SEVEN)[6].bounds().unwrap();
     assert!((bounds.lower() - (0.4 - 0.163_299_3)).abs() < 1e-6);
     assert!((bounds.upper() - (0.4 + 0.163_299_3)).abs() < 1e-6);
+}
+
+#[test]
+fn bounds_can_come_from_the_robots_means() {
+    let config = ScheduleConfig {
+        bounds_from: BoundsSource::Robots,
+        ..tiny()
+    };
+    // The last reward is 0.3, the robots' deviation 0.0625, times 2.
+    let bounds = run(&config, SEVEN)[6].bounds().unwrap();
+    assert!((bounds.lower() - 0.175).abs() < 1e-9);
+    assert!((bounds.upper() - 0.425).abs() < 1e-9);
 }
 
 #[test]

@@ -5,6 +5,10 @@ use serde::{Deserialize, Serialize};
 /// Largest style reward that Eq. 7 can pay, and largest task reward that Eq. 14 can pay:  max rᴳ = max rˢ = R*   (Eq. 8)
 pub const EXPECTED_MAXIMUM: f32 = 1.0;
 
+/// What Eq. 7 pays where the discriminator cannot tell policy and reference apart, D = 0:  1 − 0.25·(0 − 1)². The losses of
+/// Eq. 3 and 4 leave a policy that moves as the reference does no more than this.
+pub const EXPECTED_AT_EQUILIBRIUM: f32 = 0.75;
+
 /// Smallest ceiling handed out: a running maximum of zero could not divide.
 const SMALLEST_CEILING: f64 = 1e-6;
 
@@ -24,6 +28,8 @@ pub enum CeilingKind {
     Bound,
     /// The largest mean reward seen so far.
     RunningMax,
+    /// 0.75 for style, what a perfect imitation earns: the discriminator cannot tell it from the reference. 1 for the task.
+    Equilibrium,
 }
 
 /// R*, the "current expected maximum reward value" (Eq. 8), of one reward signal.
@@ -32,15 +38,25 @@ pub enum CeilingKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ceiling {
     kind: CeilingKind,
+    equilibrium: f32,
     largest_mean: Option<f64>,
 }
 
 impl Ceiling {
-    /// A ceiling that has seen nothing and stands at the bound.
-    pub fn new(kind: CeilingKind) -> Self {
+    /// R* of the style reward, with nothing seen.
+    pub fn of_style(kind: CeilingKind) -> Self {
         Self {
             kind,
+            equilibrium: EXPECTED_AT_EQUILIBRIUM,
             largest_mean: None,
+        }
+    }
+
+    /// R* of the task reward, which has no opponent, with nothing seen.
+    pub fn of_task(kind: CeilingKind) -> Self {
+        Self {
+            equilibrium: EXPECTED_MAXIMUM,
+            ..Self::of_style(kind)
         }
     }
 
@@ -49,11 +65,12 @@ impl Ceiling {
         self.largest_mean = Some(self.largest_mean.map_or(mean, |largest| largest.max(mean)));
     }
 
-    /// R* > 0: the bound, or the largest mean seen so far.
+    /// R* > 0. A running maximum that has seen nothing stands at the bound.
     pub fn value(&self) -> f32 {
         match (self.kind, self.largest_mean) {
             (CeilingKind::RunningMax, Some(largest)) => largest.max(SMALLEST_CEILING) as f32,
-            _ => EXPECTED_MAXIMUM,
+            (CeilingKind::Equilibrium, _) => self.equilibrium,
+            (CeilingKind::Bound | CeilingKind::RunningMax, _) => EXPECTED_MAXIMUM,
         }
     }
 }
@@ -77,7 +94,7 @@ mod tests {
 
     #[test]
     fn the_running_maximum_only_rises() {
-        let mut ceiling = Ceiling::new(CeilingKind::RunningMax);
+        let mut ceiling = Ceiling::of_style(CeilingKind::RunningMax);
         assert_eq!(ceiling.value(), 1.0); // nothing seen yet
         let values = [0.25, 0.5, 0.125].map(|mean| {
             ceiling.observe(mean);
@@ -88,14 +105,23 @@ mod tests {
 
     #[test]
     fn a_reward_of_zero_leaves_a_ceiling_that_can_divide() {
-        let mut ceiling = Ceiling::new(CeilingKind::RunningMax);
+        let mut ceiling = Ceiling::of_style(CeilingKind::RunningMax);
         ceiling.observe(0.0);
         assert_eq!(task_weight(0.0, ceiling.value()), 0.0);
     }
 
     #[test]
+    fn a_perfect_imitation_leaves_the_task_all_the_weight() {
+        let mut style = Ceiling::of_style(CeilingKind::Equilibrium);
+        style.observe(0.3);
+        assert_eq!(task_weight(0.75, style.value()), 1.0);
+        assert!((task_weight(0.375, style.value()) - 0.25).abs() < 1e-7); // (1/2)²
+        assert_eq!(Ceiling::of_task(CeilingKind::Equilibrium).value(), 1.0);
+    }
+
+    #[test]
     fn the_bound_does_not_move() {
-        let mut ceiling = Ceiling::new(CeilingKind::Bound);
+        let mut ceiling = Ceiling::of_style(CeilingKind::Bound);
         ceiling.observe(0.3);
         assert_eq!(ceiling.value(), 1.0);
     }

@@ -19,6 +19,10 @@ fn a_refused_report_changes_nothing() {
                 ..good
             },
             Report {
+                style_std_robots: Some(f64::NAN),
+                ..good
+            },
+            Report {
                 task_mean: f64::NEG_INFINITY,
                 ..good
             },
@@ -35,6 +39,13 @@ fn a_refused_report_changes_nothing() {
         assert!(matches!(
             schedule.observe(Report {
                 style_std: -0.1,
+                ..good
+            }),
+            Err(ReportError::NegativeDeviation { .. })
+        ));
+        assert!(matches!(
+            schedule.observe(Report {
+                style_std_robots: Some(-0.1),
                 ..good
             }),
             Err(ReportError::NegativeDeviation { .. })
