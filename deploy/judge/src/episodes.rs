@@ -1,7 +1,7 @@
 //! Episodes of one scenario: robots go until they fall or the time is over, and are measured.
 
 use anyhow::{Context, Result};
-use g1::gait::{CONTACT_FORCE, Conduct};
+use g1::gait::{CONTACT_FORCE, Conduct, Off, Strides};
 use g1::joints::{LEFT_LEG, RIGHT_LEG};
 use g1::{ACTION, FEATURES, JOINTS, RobotState, observation};
 use policy::Policy;
@@ -87,8 +87,8 @@ impl<'a> Walker<'a> {
         for step in 0..conditions.steps {
             let command = scenario.command(step, conditions.steps);
             if command != held.0 {
+                robots.iter_mut().for_each(|robot| robot.close(held.0));
                 held = (command, step);
-                robots.iter_mut().for_each(Robot::close);
             }
             for robot in 0..n {
                 if fleet.command(robot) != command {
@@ -128,7 +128,8 @@ impl<'a> Walker<'a> {
             }
         }
         for robot in &mut robots {
-            robot.close();
+            robot.close(held.0);
+            tally.off.merge(&robot.off);
             tally.conduct.merge(&robot.conduct);
             tally.settled_conduct.merge(&robot.settled_conduct);
             // Whose episode nothing ended has had all its time.
@@ -185,11 +186,16 @@ struct Robot {
     forces: Option<[f32; 2]>,
     conduct: Conduct,
     settled_conduct: Conduct,
+    strides: Strides,
+    off: Off,
 }
 
 impl Robot {
-    /// Another command, or the end.
-    fn close(&mut self) {
+    /// Another command than this one, or the end.
+    fn close(&mut self, command: [f32; 3]) {
+        if let Some(off) = std::mem::take(&mut self.strides).off(command) {
+            self.off.merge(&off);
+        }
         self.conduct.close();
         self.settled_conduct.close();
     }
@@ -225,6 +231,7 @@ impl Tally {
             self.settled_steps += 1.0;
             self.settled_error += error;
             self.settled_yaw_error += errors[2];
+            life.strides.add(velocity, forces, forces_before);
             life.settled_conduct
                 .add(command, velocity, features, forces, forces_before);
         }

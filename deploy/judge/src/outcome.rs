@@ -1,6 +1,7 @@
 //! The numbers that follow from the sums of a scenario, as a report tells them.
 
 use g1::JOINT_TABLE;
+use g1::links::total_mass;
 use serde::Serialize;
 use vocabulary::Counts;
 
@@ -28,9 +29,12 @@ impl Tally {
             rmse_lateral: root(self.squared_errors[1]),
             rmse_yaw_rate: root(self.squared_errors[2]),
             rmse_yaw_rate_settled: settled(self.settled_yaw_error),
+            off: self.off.planar(),
+            off_yaw_rate: self.off.turning(),
             velocity: [forward, left],
             yaw_rate,
             energy_j: mean(self.energy) * 1_000.0,
+            cost_of_transport: cost_of_transport(mean(self.energy), forward.hypot(left)),
             style_reward: mean(self.style),
             task_reward: mean(self.task),
             gait: verdict.to_string(),
@@ -39,6 +43,7 @@ impl Tally {
             contact_correlation: gait.contact_correlation(),
             stride_rate_hz: gait.stride_rate(CONTROL_HZ),
             duty_factor: gait.duty_factor(),
+            double_support: gait.double_support(),
             flight_share: gait.flight_share(),
             pelvis_height: gait.pelvis_height(),
             foot_clearance: self.feet.clearance(),
@@ -53,6 +58,17 @@ impl Tally {
             joint_speed_peak_joint: JOINT_TABLE[speed_joint].name,
         }
     }
+}
+
+/// Standard gravity, m/s².
+const GRAVITY: f64 = 9.81;
+
+/// Below this speed, m/s, a robot goes nowhere.
+const SOMEWHERE: f64 = 0.1;
+
+/// Work per weight and way:  E / (m·g·s), from the work of a control step (J) and the speed (m/s).
+fn cost_of_transport(work: f64, speed: f64) -> Option<f64> {
+    (speed >= SOMEWHERE).then(|| work * CONTROL_HZ / (total_mass() * GRAVITY * speed))
 }
 
 /// What came of a scenario, over all steps that robots were on their feet.
@@ -77,12 +93,18 @@ pub(super) struct Outcome {
     pub(super) rmse_yaw_rate: f64,
     /// The same without the first two seconds after a start or a new command.
     pub(super) rmse_yaw_rate_settled: Option<f64>,
+    /// Mean distance of a settled robot's mean planar velocity over whole strides from its command, m/s.
+    pub(super) off: Option<f64>,
+    /// The same of the yaw rate, rad/s.
+    pub(super) off_yaw_rate: Option<f64>,
     /// Mean planar velocity in the heading frame, m/s.
     pub(super) velocity: [f64; 2],
     /// Mean yaw rate, rad/s.
     pub(super) yaw_rate: f64,
     /// Positive mechanical work per 1,000 control steps of one robot, J, without exploration noise.
     pub(super) energy_j: f64,
+    /// Of the same work: per weight and way, without unit; none of a robot that goes nowhere.
+    pub(super) cost_of_transport: Option<f64>,
     pub(super) style_reward: f64,
     pub(super) task_reward: f64,
     /// The verdict in words, of settled robots and by the whole command: forward, lateral, yaw rate.
@@ -92,6 +114,8 @@ pub(super) struct Outcome {
     pub(super) contact_correlation: Option<f64>,
     pub(super) stride_rate_hz: Option<f64>,
     pub(super) duty_factor: Option<f64>,
+    /// Share of time with both feet on the ground.
+    pub(super) double_support: Option<f64>,
     pub(super) flight_share: Option<f64>,
     pub(super) pelvis_height: Option<f64>,
     /// Mean height of a sole in swing, m.

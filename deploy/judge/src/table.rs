@@ -15,19 +15,26 @@ const fn column(name: &'static str, unit: &'static str, value: fn(&Row) -> Strin
 }
 
 /// From left to right.
-pub(super) const COLUMNS: [Column; 21] = [
+pub(super) const COLUMNS: [Column; 25] = [
     column("scenario", "", |row| row.name.clone()),
     column("survival", "%", |row| {
         digits(100.0 * row.outcome.survival, 1)
     }),
     column("rmse", "m/s", |row| digits(row.outcome.rmse, 3)),
     column("settled", "m/s", |row| or_dash(row.outcome.rmse_settled, 3)),
+    column("off", "m/s", |row| or_dash(row.outcome.off, 3)),
     column("lateral", "m/s", |row| digits(row.outcome.rmse_lateral, 3)),
     column("yaw", "rad/s", |row| digits(row.outcome.rmse_yaw_rate, 3)),
     column("yaw settled", "rad/s", |row| {
         or_dash(row.outcome.rmse_yaw_rate_settled, 3)
     }),
+    column("yaw off", "rad/s", |row| {
+        or_dash(row.outcome.off_yaw_rate, 3)
+    }),
     column("energy", "J/1000", |row| digits(row.outcome.energy_j, 0)),
+    column("transport", "", |row| {
+        or_dash(row.outcome.cost_of_transport, 2)
+    }),
     column("style", "", |row| digits(row.outcome.style_reward, 3)),
     column("hips", "", |row| or_dash(row.outcome.hip_correlation, 2)),
     column("stride", "Hz", |row| or_dash(row.outcome.stride_rate_hz, 2)),
@@ -35,14 +42,15 @@ pub(super) const COLUMNS: [Column; 21] = [
         or_dash(row.reference.as_ref().map(|clip| clip.stride_rate_hz), 2)
     }),
     column("duty", "", |row| or_dash(row.outcome.duty_factor, 2)),
+    column("double", "%", |row| percent(row.outcome.double_support)),
     column("flight", "%", |row| percent(row.outcome.flight_share)),
     column("clear", "cm", |row| centimetres(row.outcome.foot_clearance)),
     column("slip", "cm/stride", |row| {
         centimetres(row.outcome.slip_per_stride)
     }),
     column("symmetry", "", |row| or_dash(row.outcome.step_symmetry, 2)),
-    column("torque", "%", |row| {
-        digits(100.0 * f64::from(row.outcome.torque_peak), 0)
+    column("saturated", "%", |row| {
+        percent(row.outcome.torque_saturated_share)
     }),
     column("speed", "%", |row| {
         digits(100.0 * f64::from(row.outcome.joint_speed_peak), 0)
@@ -56,14 +64,18 @@ pub(super) const LEGEND: &str = "\
 - survival: episodes that had all their time. Everything else is measured until their end.
 - rmse: root mean squared planar velocity error (III-F); settled: without the first two seconds after a start
   or a new command; lateral: its sideways part; yaw: of the yaw rate, and that of settled robots.
-- energy: positive mechanical work of a robot per 1,000 control steps (20 s), without exploration noise.
+- off, yaw off: how far a settled robot's mean velocity over whole strides is off its command, mean over robots. A pelvis
+  sways within a stride, a person's too: that is in rmse and not in here.
+- energy: positive mechanical work of a robot per 1,000 control steps (20 s), without exploration noise;
+  transport: the same per weight and way.
 - style: the discriminator's reward (Eq. 7), 0 to 1.
 - hips: correlation of left and right hip pitch, −1 a walk, +1 a hop.
 - stride, reference: strides per second of the robot, and of the reference motion nearest to the command.
-- duty: share of time that a foot is down; flight: share of time that none is.
+- duty: share of time that a foot is down; double: share of time that both are, flight: that none is.
 - clear: mean height of a foot's sole in swing; slip: way of a foot on the ground per stride.
 - symmetry: 1 both feet step alike, 0 one foot always leads.
-- torque, speed: greatest share of any joint's effort limit and velocity limit.
+- saturated: share of steps in which some joint gives all the torque it has; speed: greatest share of any joint's
+  velocity limit.
 - ended: how many episodes ended before their time, and why: a fall, straying from the command, a fault of the physics.
 - gait: stand, walk, run or turn where settled robots do what they are told, forward, aside and in turning; else
   what they do instead.";

@@ -1,6 +1,6 @@
 //! What is measured over episodes: sums that add up in any grouping.
 
-use g1::gait::{Conduct, Feet, MotorUse, Verdict};
+use g1::gait::{Conduct, Feet, MotorUse, Off, Verdict};
 use vocabulary::{Cause, Counts};
 
 /// Steps per second.
@@ -21,6 +21,8 @@ pub(super) struct Tally {
     pub(super) settled_steps: f64,
     pub(super) settled_error: f64,
     pub(super) settled_yaw_error: f64,
+    /// Of the mean velocities of settled robots over whole strides.
+    pub(super) off: Off,
     /// Squared errors of forward velocity, lateral velocity and yaw rate.
     pub(super) squared_errors: [f64; 3],
     pub(super) energy: f64,
@@ -61,6 +63,7 @@ impl Tally {
         self.settled_steps += other.settled_steps;
         self.settled_error += other.settled_error;
         self.settled_yaw_error += other.settled_yaw_error;
+        self.off.merge(&other.off);
         for axis in 0..3 {
             self.squared_errors[axis] += other.squared_errors[axis];
         }

@@ -9,6 +9,7 @@
 //! | clearance, slip, step lengths: from states | `feet` |
 //! | use of the motors' limits | `motors` |
 //! | how fast it goes and turns, and how fast it was asked to | `pace` |
+//! | where whole strides go, and how far off the command | `strides` |
 //! | gait and pace by what is asked for: to go, to turn, to stay | `conduct` |
 //! | all of it in a word | `verdict` |
 
@@ -16,12 +17,14 @@ mod conduct;
 mod feet;
 mod motors;
 mod pace;
+mod strides;
 mod verdict;
 
 pub use conduct::Conduct;
 pub use feet::Feet;
 pub use motors::{MotorUse, speed_use};
 pub use pace::{Aim, Pace};
+pub use strides::{Off, Strides};
 pub use verdict::{Part, Signs, Verdict};
 
 use crate::FEATURES;
@@ -125,6 +128,12 @@ impl Gait {
     /// Share of time with no foot on the ground.
     pub fn flight_share(&self) -> Option<f64> {
         (self.steps > 0.0).then(|| self.in_flight / self.steps)
+    }
+
+    /// Share of time with both feet on the ground: counted as n = left + right − both + neither.
+    pub fn double_support(&self) -> Option<f64> {
+        let down: f64 = self.feet_down.iter().sum();
+        (self.steps > 0.0).then(|| (down + self.in_flight) / self.steps - 1.0)
     }
 
     /// Strides per second: landings of one foot, mean of both, at `control_hz` steps a second.
