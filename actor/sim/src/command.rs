@@ -25,7 +25,7 @@ pub struct CommandConfig {
     pub standing_share: Ramp<f32>,
     /// Share of the others that have one part alone, forward, lateral or yaw rate, each as often.
     /// Default 0: all three at once, and hardly ever straight on, aside or on the spot.
-    pub pure_share: f32,
+    pub pure_share: Ramp<f32>,
     /// Least size of commands to go back, aside or to turn alone, as a share of the end of their range on
     /// that side. Default 0. Standing obeys the small ones nearly as well as stepping does, and is learnt
     /// for all.
@@ -34,7 +34,8 @@ pub struct CommandConfig {
     /// Time between new commands, s, drawn uniformly. Default 3 to 10, the span in use among
     /// published trainers.
     pub resample_seconds: [f32; 2],
-    /// Share of starts from reference motion whose command is that motion's own velocity.
+    /// Share of starts from reference motion whose command is that motion's own velocity. Motion that is out of the ranges
+    /// as they are at the time is not begun in, unless all of it is.
     /// Default 0.9, of the recipe that walked; 0.7 later in training.
     pub matched_share: Ramp<f32>,
     /// Robots that keep to one kind of command each, so that every kind gets its share of the samples.
@@ -42,6 +43,9 @@ pub struct CommandConfig {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kinds: Option<KindsConfig>,
 }
+
+/// How far beyond a range motion may be that still passes for it: a gait's speed comes of its steps, to three digits or so.
+const NEARLY: f32 = 0.02;
 
 /// When and for whom a command is drawn. By default inside an episode, where it may be of any kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -59,7 +63,7 @@ impl Default for CommandConfig {
             lateral: [0.0, 0.0].into(),
             yaw_rate: [0.0, 0.0].into(),
             standing_share: 0.0.into(),
-            pure_share: 0.0,
+            pure_share: 0.0.into(),
             least_share: 0.0,
             resample_seconds: [3.0, 10.0],
             matched_share: 0.9.into(),
@@ -75,6 +79,7 @@ impl CommandConfig {
             range.set(samples);
         }
         self.standing_share.set(samples);
+        self.pure_share.set(samples);
         self.matched_share.set(samples);
         if let Some(kinds) = &mut self.kinds {
             kinds.set(samples);
@@ -88,7 +93,7 @@ impl CommandConfig {
         self.yaw_rate.check("yaw_rate", invalid::range)?;
         self.standing_share
             .check("standing_share", invalid::share)?;
-        invalid::share("pure_share", self.pure_share)?;
+        self.pure_share.check("pure_share", invalid::share)?;
         invalid::share("least_share", self.least_share)?;
         invalid::range("resample_seconds", self.resample_seconds)?;
         invalid::at_least("resample_seconds[0]", self.resample_seconds[0], 0.02)?;
@@ -110,7 +115,15 @@ impl CommandConfig {
         }
     }
 
-    /// A command of one kind from the self.
+    /// Whether motion of a command is within the ranges as they are now, so that robots can be told to go on with it.
+    pub(crate) fn asks_for(&self, command: [f32; 3]) -> bool {
+        let ranges = [self.forward, self.lateral, self.yaw_rate].map(|range| range.now());
+        let mut parts = ranges.iter().zip(command);
+        parts
+            .all(|([least, greatest], value)| (least - NEARLY..=greatest + NEARLY).contains(&value))
+    }
+
+    /// A command of one kind from the ranges.
     fn draw_of(&self, kind: Kind, rng: &mut impl Rng) -> [f32; 3] {
         let ([slowest, fastest], lateral) = (self.forward.now(), self.lateral.now());
         let yaw_rates = self.yaw_rate.now();
@@ -144,8 +157,8 @@ impl CommandConfig {
         let stand = rng.random::<f32>() < self.standing_share.now();
         let ranges = [self.forward, self.lateral, self.yaw_rate].map(|range| range.now());
         let mut command = ranges.map(|[least, greatest]| rng.random_range(least..=greatest));
-        if self.pure_share > 0.0 {
-            let pure = rng.random::<f32>() < self.pure_share;
+        if self.pure_share != Ramp::Constant(0.0) {
+            let pure = rng.random::<f32>() < self.pure_share.now();
             let part = rng.random_range(0..command.len());
             if pure {
                 let value = match part {

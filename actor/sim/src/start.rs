@@ -122,6 +122,9 @@ impl Starts {
     }
 }
 
+/// How often a frame is drawn until one is found whose command is asked for at the time; the last one is taken.
+const TRIES: usize = 16;
+
 /// How an episode begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Beginning {
@@ -140,10 +143,13 @@ pub(crate) fn draw(
     rng: &mut impl Rng,
 ) -> Beginning {
     let from_motion = rng.random::<f32>() < start.reference_share.now();
-    let frame = match kind {
-        Some((kind, pools)) => pools.draw(kind, rng),
-        None => starts.draw(rng),
-    };
+    let frame = (0..TRIES).fold(None, |frame, _| match frame {
+        Some(frame) if commands.asks_for(starts.commands[frame]) => Some(frame),
+        _ => match kind {
+            Some((kind, pools)) => pools.draw(kind, rng),
+            None => starts.draw(rng),
+        },
+    });
     let kind = kind.map(|(kind, _)| kind);
     let (mut state, command, fits) = match frame.filter(|_| from_motion) {
         Some(frame) => {

@@ -37,7 +37,7 @@ fn pure_commands_have_one_part() {
         forward: [0.1, 1.0].into(),
         lateral: [0.1, 0.4].into(),
         yaw_rate: [0.1, 1.0].into(),
-        pure_share: 0.6,
+        pure_share: 0.6.into(),
         ..CommandConfig::default()
     };
     let mut rng = Pcg64Mcg::seed_from_u64(4);
@@ -59,7 +59,7 @@ fn pure_commands_keep_away_from_standing() {
         forward: [-0.6, 2.0].into(),
         lateral: [-0.4, 0.4].into(),
         yaw_rate: [-1.0, 1.0].into(),
-        pure_share: 1.0,
+        pure_share: 1.0.into(),
         least_share: 0.5,
         ..CommandConfig::default()
     };

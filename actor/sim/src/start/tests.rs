@@ -28,6 +28,7 @@ fn frames_are_drawn_by_weight_and_lifted_out_of_the_ground() {
         ..StartConfig::default()
     };
     let commands = CommandConfig {
+        forward: [0.4, 2.2].into(),
         matched_share: Ramp::Constant(1.0),
         ..CommandConfig::default()
     };
@@ -105,4 +106,26 @@ fn mismatched_lists_are_refused() {
     assert!(starts.validate().is_err());
     frames().validate().unwrap();
     Starts::default().validate().unwrap();
+}
+
+#[test]
+fn motion_out_of_the_ranges_waits_until_they_have_moved() {
+    let (start, starts) = (StartConfig::default(), frames());
+    let mut commands = CommandConfig {
+        forward: Ramp::moving([0.4, 1.0], [0.4, 2.5], [1e6, 2e6]),
+        matched_share: Ramp::Constant(1.0),
+        ..CommandConfig::default()
+    };
+    let mut rng = Pcg64Mcg::seed_from_u64(4);
+    let mut fast = |commands: &CommandConfig| {
+        let drawn = (0..200).map(|_| draw(&starts, None, &start, commands, &mut rng).command[0]);
+        drawn.filter(|speed| *speed == 2.2).count()
+    };
+    // Three quarters of the frames are at 2.2 m/s: of 3,200 draws 16 in a row may be, once in a hundred.
+    assert!(fast(&commands) < 10);
+    commands.set(2e6);
+    assert!((110..190).contains(&fast(&commands))); // Binomial(200, ¾): 150 ± 6
+    // Where nothing fits, motion is begun in all the same.
+    commands.forward = [3.0, 4.0].into();
+    assert!(fast(&commands) > 100);
 }

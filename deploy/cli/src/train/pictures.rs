@@ -82,7 +82,7 @@ fn four(commanded: &CommandConfig) -> [[f32; 3]; 4] {
         || commanded.standing_share.now() > 0.0
         || kinds.is_some_and(|kinds| kinds.standing > 0.0);
     let first = if stands { 0.0 } else { rounded(slowest) };
-    let alone = commanded.pure_share > 0.0 || kinds.is_some();
+    let alone = commanded.pure_share.now() > 0.0 || kinds.is_some();
     let ahead = if alone { 0.0 } else { middle };
     let back = [forward[0], forward[1]]
         .into_iter()

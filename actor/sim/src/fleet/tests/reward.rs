@@ -14,7 +14,7 @@ fn ahead() -> TaskConfig {
     TaskConfig {
         command: CommandConfig {
             forward: [0.5, 0.5].into(),
-            pure_share: 1.0,
+            pure_share: 1.0.into(),
             ..CommandConfig::default()
         },
         termination: TerminationConfig {
