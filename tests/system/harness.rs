@@ -100,7 +100,7 @@ impl Alone {
         };
         let mut config = run::Config::default();
         let smoke = open("smoke").expect("the smoke preset");
-        lay(&mut config, smoke, |on, _| open(on)).expect("all that it lies on");
+        lay(&mut config, smoke, |on, _| open(on), |_| None).expect("all that it lies on");
         config.put("fleet.actors", actors, "the test");
         config.put("run.iterations", 0, "the test");
         // `ampco train` writes every value out; this one a learner reads without its section's owner.

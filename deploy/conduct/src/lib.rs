@@ -117,7 +117,7 @@ impl RunStudy {
             let known: Vec<&str> = file.methods.iter().map(String::as_str).collect();
             for method in &self.methods {
                 if !known.contains(&method.as_str()) {
-                    let remedy = run::nearest::remedy(method, &known);
+                    let remedy = wording::nearest::remedy(method, &known);
                     return Err(usage(format!(
                         "--methods {method}: not in {path}; {remedy}"
                     )));

@@ -1,11 +1,14 @@
 //! The presets that come with the program, and those that are files: each says itself what it lies on.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use run::Config;
 use run::config::{Source, lay};
+use run::{Config, ConfigError};
 use terminal::failure::usage;
+
+use crate::resolve;
 
 /// Those of ours, by name: part of the program, so they need no folder beside it.
 const EMBEDDED: [(&str, &str); 16] = [
@@ -40,7 +43,7 @@ const EMBEDDED: [(&str, &str); 16] = [
 ];
 
 /// As whose name a preset is read from standard input.
-const STANDARD_INPUT: &str = "-";
+pub const STANDARD_INPUT: &str = "-";
 
 /// A preset with all that it lies on.
 #[derive(Debug)]
@@ -51,6 +54,8 @@ pub struct Preset {
     pub origin: String,
     /// What it sets, and what those set that it lies on.
     pub config: Config,
+    /// What is to be said of it: accepted, and odd.
+    pub notices: Vec<String>,
 }
 
 /// The names, for help and errors.
@@ -67,17 +72,23 @@ pub fn find(given: &str) -> Result<Preset> {
         None => given.to_owned(),
     };
     let (mut config, origin) = (Config::default(), source.origin.clone());
-    lay(&mut config, source, open)?;
+    let notices = lay_source(&mut config, source)?;
     Ok(Preset {
         name,
         origin,
         config,
+        notices,
     })
 }
 
-/// Lays a preset, and all that it lies on, over a configuration.
-pub fn lay_over(config: &mut Config, given: &str) -> Result<()> {
-    Ok(lay(config, top(given)?, open)?)
+/// Lays a preset, and all that it lies on, over a configuration; what is to be said of it.
+pub fn lay_over(config: &mut Config, given: &str) -> Result<Vec<String>> {
+    Ok(lay_source(config, top(given)?)?)
+}
+
+/// The same, of a text.
+pub fn lay_source(config: &mut Config, source: Source) -> Result<Vec<String>, ConfigError> {
+    lay(config, source, open, resolve::default)
 }
 
 /// What was typed: a name, a file, or what is written to us.
@@ -85,7 +96,12 @@ fn top(given: &str) -> Result<Source> {
     if given != STANDARD_INPUT {
         return open(given, None).map_err(usage);
     }
-    let text = std::io::read_to_string(std::io::stdin()).context("reading standard input")?;
+    let mut bytes = Vec::new();
+    std::io::stdin()
+        .read_to_end(&mut bytes)
+        .context("reading standard input")?;
+    let text =
+        wording::text(bytes).map_err(|foreign| usage(format!("standard input: {foreign}")))?;
     Ok(Source {
         origin: "standard input".to_owned(),
         text,
@@ -103,13 +119,33 @@ pub fn open(given: &str, folder: Option<&Path>) -> Result<Source, String> {
         });
     }
     let path: PathBuf = folder.map_or(given.into(), |folder| folder.join(given));
+    if given.is_empty() {
+        return Err("the name of the preset is empty; give a preset's name or a file".to_owned());
+    }
+    if let Some(what) = no_file(&path) {
+        return Err(format!("`{}` is {what}", wording::line(given)));
+    }
     if !path.is_file() {
-        let remedy = run::nearest::remedy(given, &names());
+        let remedy = wording::nearest::remedy(given, &names());
         return Err(format!(
-            "there is no preset and no file `{given}`; {remedy}"
+            "there is no preset and no file `{}`; {remedy}",
+            wording::line(given)
         ));
     }
     Source::read(&path).map_err(|error| format!("{:#}", anyhow::Error::from(error)))
+}
+
+/// What a path is that is there and no file, and what to give; none for a file, or where nothing is.
+pub fn no_file(path: &Path) -> Option<&'static str> {
+    let kind = std::fs::metadata(path).ok()?;
+    if kind.is_file() {
+        return None;
+    }
+    Some(if kind.is_dir() {
+        "a folder and no preset; give the TOML file in it"
+    } else {
+        "no file but a pipe or a device; give its text on standard input, as `-`"
+    })
 }
 
 /// A file's name as a run's name may be.

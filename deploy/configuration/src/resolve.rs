@@ -3,6 +3,7 @@
 //! Separate from `train` because this is where every section meets its owner: each is read and
 //! checked strictly before anything is started, so that a mistake costs a second and not an hour.
 
+use std::sync::LazyLock;
 use std::thread;
 
 use amp::{DiscriminatorConfig, ExplorationConfig, PolicyConfig, PpoConfig};
@@ -13,6 +14,7 @@ use observation::{ObservationConfig, Tables};
 use run::{Config, FleetConfig, RunConfig};
 use schemars::{Schema, SchemaGenerator};
 use sim::{RandomizationConfig, TaskConfig};
+use toml::Value;
 use vocabulary::Section;
 
 /// A section, whichever it is.
@@ -67,6 +69,8 @@ pub struct Resolved {
     pub motion: MotionConfig,
     /// Section `policy`.
     pub policy: PolicyConfig,
+    /// What is to be said of it: accepted, and odd.
+    pub notices: Vec<String>,
 }
 
 /// Reads and checks every section, and writes its defaults out into `config`.
@@ -93,14 +97,35 @@ pub fn resolve(config: &mut Config) -> Result<Resolved> {
     Ok(Resolved {
         run: config.section()?,
         fleet,
+        notices: tables.oddities(),
         tables,
         motion: config.section()?,
         policy: config.section()?,
     })
 }
 
-/// The same, with what this machine decides left open.
+/// The value or table that a dotted key has where nothing sets it.
+pub fn default(path: &str) -> Option<Value> {
+    static DEFAULTS: LazyLock<Config> = LazyLock::new(|| {
+        let mut config = Config::default();
+        settle_all(&mut config).expect("the defaults hold");
+        config
+    });
+    DEFAULTS.given(path).cloned()
+}
+
+/// As [`resolve`], with what this machine decides left open.
 pub fn settle_all(config: &mut Config) -> Result<()> {
+    for section in &SECTIONS {
+        // `--set randomization=3` means the section, and is no key of [run]: its reader says what it is made of.
+        let path = format!("{}.{}", RunConfig::NAME, section.name);
+        let value = config.given(&path).filter(|value| !value.is_table());
+        if let Some(value) = value.cloned() {
+            let origin = config.origins(&path).join(" with ");
+            config.remove(&path);
+            config.put(section.name, value, &origin);
+        }
+    }
     config.check_sections(&SECTIONS.map(|section| section.name))?;
     SECTIONS
         .iter()
@@ -208,6 +233,50 @@ mod tests {
             said.starts_with("my.toml: unknown key `curriculum`"),
             "{said}"
         );
+    }
+
+    #[test]
+    fn a_section_that_is_given_one_value_is_told_its_keys() {
+        for section in SECTIONS {
+            let mut config = Config::default();
+            config.set(&format!("{}=3", section.name)).unwrap();
+            let said = format!("{:#}", resolve(&mut config).unwrap_err());
+            let named = format!(
+                "--set {0}=3: `{0}` = 3 in [{0}]: give a table",
+                section.name
+            );
+            assert!(said.starts_with(&named), "{said}");
+            let said = complaint(&format!("{} = 3", section.name));
+            assert!(
+                said.starts_with("my.toml: ") && said.contains("give a table"),
+                "{said}"
+            );
+        }
+        let mut config = Config::default();
+        config.set("randomization=3").unwrap();
+        let said = format!("{:#}", resolve(&mut config).unwrap_err());
+        assert!(
+            said.contains("keys: `strength`, `plain_share`, `mass_variation`, "),
+            "{said}"
+        );
+        // A table of that name in [run] is not taken for the section.
+        let said = complaint("[run.ppo]\nepochs = 3");
+        assert!(said.contains("unknown key `ppo` in [run]"), "{said}");
+    }
+
+    #[test]
+    fn lists_that_leave_out_what_they_are_for_are_told() {
+        let notices = |text: &str| {
+            let mut config = Config::parse(text, "my.toml").unwrap();
+            resolve(&mut config).unwrap().notices
+        };
+        assert_eq!(notices(""), [""; 0]);
+        let said = notices("[observation]\nactor.terms = ['joint_angle', 'gravity']");
+        assert!(said[0].contains("actor.terms has no `command`"), "{said:?}");
+        for name in presets::names() {
+            let mut config = presets::find(name).unwrap().config;
+            assert_eq!(resolve(&mut config).unwrap().notices, [""; 0], "{name}");
+        }
     }
 
     #[test]

@@ -93,7 +93,11 @@ impl StudyFile {
     /// Names the key, what is wrong with it and what would be right.
     pub fn parse(text: &str) -> Result<Self, FileError> {
         let file: Self = toml::from_str(text).map_err(|error| {
-            FileError::Syntax(wording::refusal(text, error.span(), error.message()))
+            FileError::Syntax(wording::refusal(
+                text,
+                error.span(),
+                &wording::plain(error.message()),
+            ))
         })?;
         file.check()?;
         Ok(file)

@@ -92,7 +92,7 @@ impl Check {
             (1..=most).contains(&value),
             field,
             value,
-            "use a whole number, at least 1 and not absurdly large",
+            &format!("use a whole number from 1 to {most}"),
         )
     }
 

@@ -20,6 +20,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;
 use vocabulary::invalid::{positive, require};
 use vocabulary::{Checked, Invalid, Section, invalid};
+use wording::nearest;
 
 /// Most past frames of a term: two thirds of a second.
 const MOST_PAST: usize = 32;
@@ -178,7 +179,7 @@ impl ObservationConfig {
     /// # Errors
     /// The first value that cannot be used.
     pub fn tables(&self) -> Result<Tables, Invalid> {
-        let actor = at("actor", table(&self.actor, 0, |_| None))?;
+        let actor = at("actor", table(&self.actor, 0, &known(|_| true), |_| None))?;
         let critic = at("critic", self.critic())?;
         let judged = SeenList {
             terms: self.discriminator.terms.clone(),
@@ -192,8 +193,8 @@ impl ObservationConfig {
         };
         let discriminator = at(
             "discriminator",
-            table(&judged, 0, |term| {
-                let lack = "reference motion has no such thing: use terms of the robot's state";
+            table(&judged, 0, &known(Term::is_of_motion), |term| {
+                let lack = "reference motion has no such thing";
                 (!term.is_of_motion()).then_some(lack)
             }),
         )?;
@@ -232,16 +233,19 @@ impl ObservationConfig {
             )?;
             return Ok(None);
         }
-        let own = table(&own, usize::from(sees_actor), |_| None)?;
+        let mut names = known(|_| true);
+        names.insert(0, ACTOR);
+        let own = table(&own, usize::from(sees_actor), &names, |_| None)?;
         Ok(Some(Critic { sees_actor, own }))
     }
 }
 
-/// One list made ready, whose first term is that many in the list as it is written; `refuse` says what is wrong with a
-/// term, if something is.
+/// One list made ready, whose first term is that many in the list as it is written; `names` are those that it may hold,
+/// and `refuse` says what is wrong with a term, if something is.
 fn table(
     list: &SeenList,
     first: usize,
+    names: &[&str],
     refuse: impl Fn(&Term) -> Option<&'static str>,
 ) -> Result<Table, Invalid> {
     require(
@@ -255,9 +259,9 @@ fn table(
     for (i, name) in list.terms.iter().enumerate() {
         let path = format!("terms[{}]", first + i);
         let bad = |remedy: String| Invalid::new(path.clone(), name, remedy);
-        let term = terms::named(name).ok_or_else(|| bad(format!("use one of {}", known())))?;
+        let term = terms::named(name).ok_or_else(|| bad(nearest::remedy(name, names)))?;
         if let Some(lack) = refuse(term) {
-            return Err(bad(lack.to_owned()));
+            return Err(bad(format!("{lack}; known: {}", nearest::names(names))));
         }
         if entries.iter().any(|other| other.term.name == term.name) {
             return Err(bad(TWICE.to_owned()));
@@ -273,11 +277,16 @@ fn table(
         });
     }
     for name in list.term.keys() {
+        let listed: Vec<&str> = list.terms.iter().map(String::as_str).collect();
+        let remedy = match nearest::remedy(name, &listed) {
+            known if known.starts_with("known") => UNLISTED.to_owned(),
+            close => format!("{close} Else {UNLISTED}"),
+        };
         require(
-            list.terms.contains(name),
+            listed.contains(&name.as_str()),
             &format!("term.{name}"),
             name,
-            UNLISTED,
+            remedy,
         )?;
     }
     Ok(Table::of(entries))
@@ -295,10 +304,10 @@ fn past(path: &str, past: usize) -> Checked {
     require(past <= MOST_PAST, path, past, remedy)
 }
 
-/// Names of all terms.
-fn known() -> String {
-    let names: Vec<&str> = TERMS.iter().map(|term| term.name).collect();
-    names.join(", ")
+/// Names of all terms that are fit for a list.
+fn known(fit: impl Fn(&Term) -> bool) -> Vec<&'static str> {
+    let terms = TERMS.iter().filter(|term| fit(term));
+    terms.map(|term| term.name).collect()
 }
 
 /// A result inside a table of the section.

@@ -11,6 +11,7 @@
 //! | the `[observation]` section | [`config`] |
 //! | a list made ready: places, widths, rows, reflection | [`table`] |
 //! | the lists of a run together | [`tables`] |
+//! | lists that are allowed and odd | [`mod@oddities`] |
 //! | two processes' lists compared | [`print`] |
 //!
 //! A row holds its terms one after another; a term with past frames has its newest first, then the older ones. What a
@@ -18,6 +19,7 @@
 #![forbid(unsafe_code)]
 
 pub mod config;
+pub mod oddities;
 pub mod print;
 mod reflect;
 pub mod scene;

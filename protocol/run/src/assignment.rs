@@ -15,6 +15,9 @@ pub(crate) struct Assignment {
 /// Keys that are asked for so often that they go without their section.
 const SHORT: [(&str, &str); 1] = [("physics", "fleet")];
 
+/// What a preset says of presets, above its sections.
+pub(crate) const LAYERING: [&str; 2] = ["on", "unset"];
+
 /// Parses one assignment. A key without a dot is one of `[run]`: `seed=7` means `run.seed=7`; or one
 /// of the few of `SHORT`: `physics=batched` means `fleet.physics=batched`.
 pub(crate) fn parse(text: &str) -> Result<Assignment, String> {
@@ -25,6 +28,13 @@ pub(crate) fn parse(text: &str) -> Result<Assignment, String> {
     if path.iter().any(String::is_empty) {
         return Err(format!(
             "`{key}` is not a key; expected section.key, as in ppo.epochs=4"
+        ));
+    }
+    if LAYERING.contains(&&*path[0]) {
+        return Err(format!(
+            "`{}` belongs into the file of a preset, above its first section, and no option can set it: write such a \
+             file and give it with --preset",
+            path[0]
         ));
     }
     let value = parse_value(value.trim())?;
@@ -44,6 +54,11 @@ fn parse_value(text: &str) -> Result<Value, String> {
         Ok(mut table) if table.len() == 1 => {
             table.remove("value").ok_or_else(|| "no value".to_owned())
         }
+        _ if is_whole(text) => Err(format!(
+            "the number is too large: whole numbers go from {} to {}",
+            i64::MIN,
+            i64::MAX
+        )),
         // `overlapped` for `"overlapped"`: shells eat quotes, so a bare word is taken as text.
         _ if !text.starts_with(['[', '{', '"', '\'']) && !text.contains('\n') => {
             Ok(Value::String(text.to_owned()))
@@ -51,6 +66,13 @@ fn parse_value(text: &str) -> Result<Value, String> {
         Ok(_) => Err("expected one value".to_owned()),
         Err(error) => Err(format!("the value is not TOML: {}", error.message())),
     }
+}
+
+/// Whether it is a whole number, however long.
+fn is_whole(text: &str) -> bool {
+    let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
+    // 007 is a word: TOML knows no such number, and it may be a name.
+    !digits.starts_with('0') && !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit())
 }
 
 /// Puts the value at its path, making the tables on the way. A table as value replaces what was there: an enum has one
@@ -121,6 +143,21 @@ mod tests {
         assert!(parse("ppo.=1").unwrap_err().contains("section.key"));
         assert!(parse("ppo.clip=").unwrap_err().contains("missing"));
         assert!(parse("policy.hidden=[1,").unwrap_err().contains("not TOML"));
+        // 2⁶³, one more than there is.
+        let large = parse("seed=9223372036854775808").unwrap_err();
+        assert!(large.contains("too large"), "{large}");
+        assert_eq!(parsed("seed=9223372036854775807").1, i64::MAX.into());
+    }
+
+    #[test]
+    fn what_a_preset_says_of_presets_is_no_value() {
+        for given in ["on=agile", "unset=[\"ppo.epochs\"]", "unset={}", "on.x=1"] {
+            let said = parse(given).unwrap_err();
+            assert!(
+                said.contains("file of a preset") && said.contains("--preset"),
+                "{said}"
+            );
+        }
     }
 
     #[test]

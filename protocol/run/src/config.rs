@@ -10,8 +10,9 @@ use std::path::Path;
 
 use toml::{Table, Value};
 use vocabulary::Section;
+use wording::nearest;
 
-use crate::{assignment, nearest, replace};
+use crate::{assignment, replace};
 
 mod blame;
 mod complaint;
@@ -19,6 +20,7 @@ mod error;
 mod layers;
 mod moved;
 mod older;
+mod probe;
 mod tables;
 
 pub use error::ConfigError;
@@ -32,6 +34,8 @@ pub struct Config {
     table: Table,
     /// Dotted path of every given leaf → the words for where it was given.
     origins: BTreeMap<String, String>,
+    /// Dotted path of what a preset has taken away and nothing has set again → which preset.
+    unset: BTreeMap<String, String>,
 }
 
 impl Config {
@@ -57,7 +61,11 @@ impl Config {
     pub fn of(table: Table, origin: &str) -> Self {
         let mut origins = BTreeMap::new();
         mark(&table, "", origin, &mut origins);
-        Self { table, origins }
+        Self {
+            table,
+            origins,
+            unset: BTreeMap::new(),
+        }
     }
 
     /// Lays `over` on top: its values win, what it does not mention stays.
@@ -140,6 +148,16 @@ impl Config {
     /// Removes the value or table at a dotted path, if there is one.
     pub fn remove(&mut self, path: &str) {
         self.forget(path, true);
+        self.cut(path);
+    }
+
+    /// The same, as the `unset` of a preset does.
+    pub(crate) fn unset(&mut self, path: &str, origin: &str) {
+        self.remove(path);
+        self.unset.insert(path.to_owned(), origin.to_owned());
+    }
+
+    fn cut(&mut self, path: &str) {
         let Some((parent, name)) = path.rsplit_once('.') else {
             self.table.remove(path);
             return;
@@ -182,23 +200,14 @@ impl Config {
         found
     }
 
-    /// Refuses a section that is not one of `known`, and a value outside every section.
+    /// Refuses a section that is not one of `known`.
     pub fn check_sections(&self, known: &[&str]) -> Result<(), ConfigError> {
-        for (section, value) in &self.table {
+        for section in self.table.keys() {
             if !known.contains(&section.as_str()) {
                 return Err(ConfigError::UnknownSection {
                     origin: self.origin_of_section(section),
                     section: section.clone(),
                     remedy: nearest::remedy(section, known),
-                });
-            }
-            if !value.is_table() {
-                return Err(ConfigError::Value {
-                    origin: self.origin_of_section(section),
-                    section: section.clone(),
-                    key: section.clone(),
-                    value: value.to_string(),
-                    problem: "this is the name of a section, which holds keys".to_owned(),
                 });
             }
         }
@@ -210,9 +219,12 @@ impl Config {
         let name = T::NAME;
         let section: T = match self.table.get(name) {
             None => T::default(),
-            Some(given) => serde_path_to_error::deserialize(given.clone()).map_err(|error| {
-                self.explain(name, &error.path().to_string(), error.inner().message())
-            })?,
+            Some(given) => {
+                self.check_sizes(name, given)?;
+                serde_path_to_error::deserialize(given.clone()).map_err(|error| {
+                    self.explain::<T>(&error.path().to_string(), error.inner().message())
+                })?
+            }
         };
         let checked = section.validate();
         checked.map_err(|invalid| self.refuse(name, &invalid.path, &invalid))?;
@@ -221,10 +233,11 @@ impl Config {
 
     /// The error for a value at `path` in a section that turns out to be of no use, as a file that cannot be read.
     pub fn refuse(&self, section: &str, path: &str, problem: impl Display) -> ConfigError {
+        let (origin, problem) = self.blamed(section, path, problem.to_string());
         ConfigError::Refused {
-            origin: self.origin_of_value(section, path),
+            origin,
             section: section.to_owned(),
-            problem: problem.to_string(),
+            problem,
         }
     }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::checkpoint::Checkpoints;
 use crate::config::{Config, ConfigError};
-use crate::nearest;
+use wording::nearest;
 
 /// Why a run's folder cannot be used.
 #[derive(Debug, thiserror::Error)]

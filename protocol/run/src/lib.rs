@@ -26,7 +26,6 @@ pub mod journal;
 pub mod log;
 pub mod metrics;
 pub mod motion;
-pub mod nearest;
 pub mod resume;
 pub mod roles;
 pub mod sections;

@@ -121,7 +121,7 @@ fn a_wrong_type_names_the_assignment_that_gave_it() {
         message.starts_with("--set walk.steps=many: `steps` = \"many\""),
         "{message}"
     );
-    assert!(message.contains("expected usize"), "{message}");
+    assert!(message.contains("give a whole number"), "{message}");
 }
 
 #[test]
@@ -149,7 +149,6 @@ fn an_unknown_section_is_answered_with_the_closest() {
         message.contains("[wlak]") && message.contains("`walk`"),
         "{message}"
     );
-    assert!(config("walk = 3").check_sections(&["walk"]).is_err());
     assert!(config("[walk]").check_sections(&["walk"]).is_ok());
 }
 

@@ -1,5 +1,5 @@
-//! How messages to people are worded: counts, what is shown of a file's content, and what a file is that is not what its
-//! name says.
+//! How messages to people are worded: counts, what is shown of a file's content, what a file is that is not what its
+//! name says, the closest names, and the complaints of a reader of TOML in TOML's words.
 //!
 //! Separate, and below everything, because whatever reads a file echoes what it could not use: motion, configuration,
 //! studies, metrics. A file that is something else may be a single line of megabytes, with bytes that a terminal obeys.
@@ -7,8 +7,11 @@
 #![forbid(unsafe_code)]
 
 mod foreign;
+pub mod nearest;
+mod plain;
 
 pub use foreign::{Foreign, foreign};
+pub use plain::plain;
 
 use std::fmt::Display;
 use std::ops::Range;

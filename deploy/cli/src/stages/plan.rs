@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use configuration::{presets, resolve};
 use run::Config;
-use run::config::{Source, lay};
+use run::config::Source;
 use serde::Deserialize;
 use terminal::failure::usage;
 use terminal::file;
@@ -84,7 +84,7 @@ impl Plan {
             }
             None => {
                 let names = EMBEDDED.map(|(name, _)| name);
-                let remedy = run::nearest::remedy(which, &names);
+                let remedy = wording::nearest::remedy(which, &names);
                 return Err(usage(format!(
                     "there are no stages and no file `{which}`; {remedy}"
                 )));
@@ -100,7 +100,7 @@ impl Plan {
                 before = Config::default();
             }
             let source = stage.source(which, folder.as_deref())?;
-            lay(&mut before, source, presets::open)?;
+            presets::lay_source(&mut before, source)?;
             let planned = stage.planned(stem, before.clone(), actors, set);
             stages.push(planned.with_context(|| format!("{which}: stage {}", stage.name))?);
         }
@@ -222,14 +222,14 @@ pub(super) fn list() -> String {
 
 fn parse(text: &str) -> Result<File, String> {
     let mut file: File = toml::from_str(text)
-        .map_err(|error| wording::refusal(text, error.span(), error.message()))?;
+        .map_err(|error| wording::refusal(text, error.span(), &wording::plain(error.message())))?;
     if file.stages.is_empty() {
         return Err("stages: none; write at least one".into());
     }
     if let Some(after) = &file.after {
         let ours = EMBEDDED.iter().find(|(name, _)| name == after);
         let (_, text) = ours.ok_or_else(|| {
-            let remedy = run::nearest::remedy(after, &EMBEDDED.map(|(name, _)| name));
+            let remedy = wording::nearest::remedy(after, &EMBEDDED.map(|(name, _)| name));
             format!("after: there are no stages `{after}`; {remedy}")
         })?;
         file.stages.splice(0..0, parse(text)?.stages);

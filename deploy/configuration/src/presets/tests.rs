@@ -23,7 +23,7 @@ fn layer(text: &str) -> (Config, Config) {
 #[test]
 fn a_preset_holds_only_what_differs_from_what_it_lies_on() {
     let mut defaults = Config::default();
-    crate::resolve::resolve(&mut defaults).unwrap();
+    resolve::resolve(&mut defaults).unwrap();
     // The default is "one per core"; what that comes to is this machine's business.
     defaults.put("fleet.actors", 0, "the test");
     for (name, text) in EMBEDDED {
@@ -130,7 +130,7 @@ fn a_file_lies_on_another_beside_it_and_that_on_one_of_ours() {
     // A mistake below is told of the file that it stands in.
     let mut wrong = top;
     wrong.put("ppo.epochs", -1, "the test");
-    assert!(crate::resolve::resolve(&mut wrong).is_err());
+    assert!(resolve::resolve(&mut wrong).is_err());
 }
 
 #[test]
@@ -158,6 +158,9 @@ fn what_is_not_there_is_named_with_the_closest() {
             "on = \"agile\"\nunset = [\"task.gate.efort\"]",
         ),
         ("nothing.toml", "unset = [\"ppo.epochs\"]"),
+        ("term.toml", "unset = [\"task.reward.track\"]"),
+        ("table.toml", "unset = [\"task.command\"]"),
+        ("absent.toml", "unset = [\"task.gate.effort\"]"),
         ("kind.toml", "on = [\"agile\"]"),
         ("list.toml", "on = \"agile\"\nunset = \"task.gate\""),
         ("mixed.toml", "on = \"agile\"\nunset = [1]"),
@@ -170,7 +173,22 @@ fn what_is_not_there_is_named_with_the_closest() {
             "unset.toml",
             ["task.gate.efort", "did you mean `task.gate.effort`"],
         ),
-        ("nothing.toml", ["ppo.epochs", "take the line away"]),
+        (
+            "nothing.toml",
+            ["ppo.epochs", "it is 4 by default; take the line away"],
+        ),
+        (
+            "term.toml",
+            [
+                "`task.reward.track`; it is there by default",
+                "task.reward.track.weight = 0",
+            ],
+        ),
+        (
+            "table.toml",
+            ["`task.command`", "by default; take the line away"],
+        ),
+        ("absent.toml", ["`task.gate.effort`", "take the line away"]),
         ("kind.toml", ["on = ", "on = \"ampco\""]),
         (
             "list.toml",
@@ -205,7 +223,7 @@ fn another_method_takes_the_place_of_the_one_below() {
     ]);
     let method = |name| {
         let mut config = files.find(name).unwrap();
-        crate::resolve::resolve(&mut config).unwrap();
+        resolve::resolve(&mut config).unwrap();
         config.given("scheduler.method").unwrap().to_string()
     };
     // `agile` has the method amp.
@@ -223,4 +241,139 @@ fn another_method_takes_the_place_of_the_one_below() {
         config.origin("scheduler.method"),
         Some(&*files.path("plain.toml"))
     );
+}
+
+#[test]
+fn what_unset_leaves_broken_is_blamed_on_it() {
+    let files = Files::new(&[
+        (
+            "range.toml",
+            "on = \"ampco-literal\"\nunset = [\"randomization.friction.range\"]",
+        ),
+        (
+            "method.toml",
+            "on = \"agile\"\nunset = [\"scheduler.method.amp.style_weight\"]",
+        ),
+        (
+            "choice.toml",
+            "on = \"agile\"\nunset = [\"scheduler.method.amp\"]",
+        ),
+        // Nothing is left that pays.
+        (
+            "pay.toml",
+            "on = \"pay-below.toml\"\nunset = [\"task.reward.track_wide\"]",
+        ),
+        (
+            "pay-below.toml",
+            "[task.reward]\ntrack = { weight = 0.0 }\ntrack_wide = { weight = 1.0 }",
+        ),
+        // At odds with a value that was taken away elsewhere in the section.
+        (
+            "kinds.toml",
+            "on = \"kinds-below.toml\"\nunset = [\"task.command.forward\"]",
+        ),
+        (
+            "kinds-below.toml",
+            "[task.command]\nforward = [-0.5, 1.0]\nkinds = { backward = 1.0 }",
+        ),
+        (
+            "again.toml",
+            "on = \"range.toml\"\n[randomization.friction]\nrange = [0.5, 1.0]",
+        ),
+    ]);
+    let told = |name: &str| {
+        let mut config = files.find(name).unwrap();
+        format!("{:#}", resolve::resolve(&mut config).unwrap_err())
+    };
+    let range = told("range.toml");
+    let place = files.path("range.toml");
+    assert!(range.starts_with(&place), "{range}");
+    let says = "`range` is missing; unset takes \"randomization.friction.range\" away there: give it another value, or \
+                unset all of \"randomization.friction\"";
+    assert!(range.ends_with(says), "{range}");
+    for (name, path) in [
+        ("method.toml", "scheduler.method.amp.style_weight"),
+        ("choice.toml", "scheduler.method.amp"),
+        ("pay.toml", "task.reward.track_wide"),
+    ] {
+        let said = told(name);
+        let blamed = said.starts_with(&files.path(name));
+        assert!(
+            blamed && said.contains(&format!("unset takes \"{path}\" away")),
+            "{said}"
+        );
+    }
+    let kinds = told("kinds.toml");
+    assert!(
+        kinds.starts_with(&files.path("kinds-below.toml"))
+            && kinds.contains(&format!(
+                "unset of {} takes \"task.command.forward\" away",
+                files.path("kinds.toml")
+            )),
+        "{kinds}"
+    );
+    // What is set again is not missed.
+    let mut again = files.find("again.toml").unwrap();
+    resolve::resolve(&mut again).unwrap();
+    again.put("randomization.friction.range", vec![2.0, 1.0], "the test");
+    let said = resolve::resolve(&mut again).unwrap_err().to_string();
+    assert!(
+        said.starts_with("the test: ") && !said.contains("unset"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_preset_that_says_nothing_is_told() {
+    let files = Files::new(&[
+        ("empty.toml", ""),
+        ("comment.toml", "# on = \"agile\"\n[ppo]\n"),
+        ("term.toml", "[task.gate.effort]\n"),
+        ("on.toml", "on = \"agile\""),
+        ("below.toml", "on = \"empty.toml\"\n[ppo]\nepochs = 3"),
+        (
+            "stays.toml",
+            "on = \"ampco\"\nunset = [\"task.reward.track\"]",
+        ),
+    ]);
+    let notices = |name: &str| find(&files.path(name)).unwrap().notices;
+    for (name, told) in [
+        ("empty.toml", Some(("empty.toml", "changes nothing"))),
+        ("comment.toml", Some(("comment.toml", "changes nothing"))),
+        ("below.toml", Some(("empty.toml", "changes nothing"))),
+        (
+            "stays.toml",
+            Some(("stays.toml", "set task.reward.track.weight = 0")),
+        ),
+        ("term.toml", None),
+        ("on.toml", None),
+    ] {
+        let said = notices(name);
+        match told {
+            Some((file, words)) => assert!(
+                said.len() == 1
+                    && said[0].starts_with(&files.path(file))
+                    && said[0].contains(words),
+                "{name}: {said:?}"
+            ),
+            None => assert_eq!(said, [""; 0], "{name}"),
+        }
+    }
+}
+
+#[test]
+fn what_is_no_file_is_told_for_what_it_is() {
+    let files = Files::new(&[("folder/inside.toml", "")]);
+    for (given, what) in [
+        (files.path("folder"), "is a folder and no preset"),
+        (
+            "/dev/null".to_owned(),
+            "give its text on standard input, as `-`",
+        ),
+        (String::new(), "the name of the preset is empty"),
+        (files.path("nowhere"), "there is no preset and no file"),
+    ] {
+        let said = format!("{:#}", find(&given).unwrap_err());
+        assert!(said.contains(what), "{given}: {said}");
+    }
 }

@@ -96,12 +96,29 @@ fn what_cannot_be_seen_is_refused_with_its_place_and_a_remedy() {
         (
             "[critic]\nterms = ['actor', 'friction', 'heigth']",
             "critic.terms[2]",
-            "use one of",
+            "did you mean `height`?",
+        ),
+        // What no name is near to is answered with what the list may hold.
+        (
+            "[critic]\nterms = ['zzzz']",
+            "critic.terms[0]",
+            "known: `actor`, `height`",
+        ),
+        (
+            "[discriminator]\nterms = ['zzzz']",
+            "discriminator.terms[0]",
+            "known: `height`, `linear_velocity`, `angular_velocity`, `gravity`, `joint_position`, `joint_angle`, \
+             `joint_velocity`, `key_bodies`",
+        ),
+        (
+            "[actor.term.gravty]\nscale = 2.0",
+            "actor.term.gravty",
+            "did you mean `gravity`?",
         ),
         (
             "[discriminator]\nterms = ['command']",
             "discriminator.terms[0]",
-            "reference motion",
+            "reference motion has no such thing; known: `height`, ",
         ),
         (
             "[discriminator]\nterms = ['foot_forces']",

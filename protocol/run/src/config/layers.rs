@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::{Config, ConfigError, table};
-use crate::nearest;
+use wording::nearest;
 
 /// The text of a preset.
 #[derive(Clone, Debug)]
@@ -55,13 +55,15 @@ pub(super) fn text(path: &Path) -> Result<String, ConfigError> {
     })
 }
 
-/// Lays a preset, and first all that it lies on, over `config`. `open` finds what `on` names, in the folder of the file that
-/// names it; it answers with the words of what is wrong.
+/// Lays a preset, and first all that it lies on, over `config`; what is to be said of it, where it is accepted and odd.
+/// `open` finds what `on` names, in the folder of the file that names it; it answers with the words of what is wrong.
+/// `default` knows the value or table that a key has where nothing sets it.
 pub fn lay(
     config: &mut Config,
     top: Source,
     open: impl Fn(&str, Option<&Path>) -> Result<Source, String>,
-) -> Result<(), ConfigError> {
+    default: impl Fn(&str) -> Option<Value>,
+) -> Result<Vec<String>, ConfigError> {
     let mut layers: Vec<Layer> = Vec::new();
     let mut next = Some(top);
     while let Some(source) = next {
@@ -87,10 +89,11 @@ pub fn lay(
         next = below.transpose()?;
         layers.push(layer);
     }
+    let mut notices = Vec::new();
     for layer in layers.into_iter().rev() {
-        layer.apply(config)?;
+        layer.apply(config, &default, &mut notices)?;
     }
-    Ok(())
+    Ok(notices)
 }
 
 /// A preset by itself.
@@ -129,30 +132,77 @@ impl Layer {
         })
     }
 
-    fn apply(self, config: &mut Config) -> Result<(), ConfigError> {
+    fn apply(
+        self,
+        config: &mut Config,
+        default: impl Fn(&str) -> Option<Value>,
+        notices: &mut Vec<String>,
+    ) -> Result<(), ConfigError> {
+        // A section alone says nothing; a table in one lists a term.
+        let says = self.sets.leaves().keys().any(|path| path.contains('.'));
+        if self.on.is_none() && self.unset.is_empty() && !says {
+            let origin = &self.origin;
+            notices.push(format!(
+                "{origin}: nothing is set in it, so it changes nothing"
+            ));
+        }
         for path in &self.unset {
+            let default = default(path);
             if config.given(path).is_none() {
-                let known = paths(config);
-                let depth = path.matches('.').count();
-                let known = known.iter().map(String::as_str);
-                // A table that the key would stand in is not what was meant.
-                let known: Vec<&str> = known
-                    .filter(|known| known.matches('.').count() == depth)
-                    .collect();
-                let remedy = match nearest::remedy(path, &known) {
-                    // All that is set would bury the message.
-                    all if all.starts_with("known") => "take the line away".to_owned(),
-                    close => close,
-                };
+                let remedy = unset_in_vain(config, path, default.as_ref());
                 let path = wording::line(path);
                 let problem = format!("unset: nothing that it lies on sets `{path}`; {remedy}");
                 return Err(refused(&self.origin, problem));
             }
-            config.remove(path);
+            config.unset(path, &self.origin);
+            let again = || self.sets.given(path).is_some();
+            if default.as_ref().is_some_and(is_term) && !again() {
+                let origin = &self.origin;
+                notices.push(format!("{origin}: unset: `{path}` {}", stays(path)));
+            }
         }
         config.merge(self.sets);
         Ok(())
     }
+}
+
+/// What to do about a key to unset that nothing has set.
+fn unset_in_vain(config: &Config, path: &str, default: Option<&Value>) -> String {
+    match default {
+        Some(term) if is_term(term) => return format!("it {}", stays(path)),
+        Some(value @ Value::Table(_))
+            if value.as_table().is_some_and(|table| !table.is_empty()) =>
+        {
+            return "it is what it is by default; take the line away".to_owned();
+        }
+        Some(value) => {
+            let value = shown(value);
+            return format!("it is {value} by default; take the line away, or set another value");
+        }
+        None => {}
+    }
+    let known = paths(config);
+    let depth = path.matches('.').count();
+    let known = known.iter().map(String::as_str);
+    // A table that the key would stand in is not what was meant.
+    let known: Vec<&str> = known
+        .filter(|known| known.matches('.').count() == depth)
+        .collect();
+    match nearest::remedy(path, &known) {
+        // All that is set would bury the message.
+        all if all.starts_with("known") => "take the line away".to_owned(),
+        close => close,
+    }
+}
+
+/// Whether a table is a term of the task that weighs something.
+fn is_term(table: &Value) -> bool {
+    table.get("weight").is_some()
+}
+
+/// What becomes of a term that is there by default.
+fn stays(path: &str) -> String {
+    format!("is there by default, and stays; to do without it set {path}.weight = 0")
 }
 
 /// Takes the keys to unset out of a preset.

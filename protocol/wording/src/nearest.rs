@@ -1,6 +1,6 @@
 //! Closest names: what somebody probably meant to type.
 //!
-//! Separate because keys, sections, presets and runs are all misspelt the same way.
+//! Separate because keys, sections, presets, terms and runs are all misspelt the same way.
 
 /// Longer names are not misspelt, and comparing them takes time.
 const LONGEST: usize = 100;
@@ -9,11 +9,17 @@ const LONGEST: usize = 100;
 pub fn remedy(name: &str, known: &[&str]) -> String {
     let close = nearest(name, known);
     if close.is_empty() {
-        format!("known: {}", known.join(", "))
+        format!("known: {}", names(known))
     } else {
         let quoted: Vec<String> = close.iter().map(|name| format!("`{name}`")).collect();
         format!("did you mean {}?", quoted.join(" or "))
     }
+}
+
+/// Names in a row, each in marks, so that a message that is cut is cut between them.
+pub fn names(names: &[&str]) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    quoted.join(", ")
 }
 
 /// At most three of `known` that differ from `name` in about a third of their letters, closest first.
@@ -80,7 +86,7 @@ mod tests {
         );
         assert_eq!(
             remedy("zzzzzzzz", &known),
-            "known: steps, environments, actors"
+            "known: `steps`, `environments`, `actors`"
         );
     }
 }
