@@ -88,15 +88,27 @@ impl CommandConfig {
 
     /// Checks every field; names the first bad one.
     pub(crate) fn validate(&self) -> Checked {
-        self.forward.check("forward", invalid::range)?;
-        self.lateral.check("lateral", invalid::range)?;
-        self.yaw_rate.check("yaw_rate", invalid::range)?;
+        let within = |limits, why| {
+            move |path: &str, range: [f32; 2]| invalid::range_between(path, range, limits, why)
+        };
+        let metres = "metres per second; a sprinter does 10";
+        self.forward
+            .check("forward", within([-10.0, 10.0], metres))?;
+        let metres = "metres per second; nobody steps aside faster";
+        self.lateral.check("lateral", within([-5.0, 5.0], metres))?;
+        let radians = "radians per second; a turn and a half a second is 9.4";
+        self.yaw_rate
+            .check("yaw_rate", within([-10.0, 10.0], radians))?;
         self.standing_share
             .check("standing_share", invalid::share)?;
         self.pure_share.check("pure_share", invalid::share)?;
         invalid::share("least_share", self.least_share)?;
-        invalid::range("resample_seconds", self.resample_seconds)?;
-        invalid::at_least("resample_seconds[0]", self.resample_seconds[0], 0.02)?;
+        invalid::range_between(
+            "resample_seconds",
+            self.resample_seconds,
+            [0.02, 86_400.0],
+            "seconds, from one control step to a day",
+        )?;
         self.matched_share.check("matched_share", invalid::share)?;
         self.kinds
             .as_ref()

@@ -91,7 +91,8 @@ impl KindsConfig {
             "kinds.mixed",
         ];
         for (field, weight) in fields.into_iter().zip(self.weights()) {
-            invalid::at_least(field, weight, 0.0)?;
+            let why = "shares of robots, relative to each other";
+            invalid::between(field, weight, [0.0, 1e6], why)?;
         }
         self.approach.check("kinds.approach", |path, approach| {
             invalid::require(

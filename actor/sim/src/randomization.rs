@@ -14,7 +14,7 @@ use observation::Tables;
 use rand::{Rng, RngExt};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use vocabulary::invalid::{self, range, within};
+use vocabulary::invalid::{self, range_between, within};
 use vocabulary::{Checked, Ramp, Section};
 
 /// `[randomization]`: rows of Table I. Without any, the default, every robot is that of the robot's tables, its sensors are
@@ -94,6 +94,41 @@ pub const ROWS: [&str; 9] = [
     "joint_velocity_noise",
 ];
 
+/// What no range of a row may go beyond, in the table's order, and why. Beyond them the numbers of a simulation break, or
+/// there is no such robot.
+const LIMITS: [([f32; 2], &str); ROWS.len()] = [
+    (
+        [-7.0, 30.0],
+        "kilograms; the torso weighs 7.8 kg and has to keep some, the whole robot weighs 32",
+    ),
+    (
+        [0.0, 3.0],
+        "a coefficient of friction is never negative, ice has 0.05, rubber on concrete about 1",
+    ),
+    (
+        [-0.3, 0.3],
+        "metres; farther off the centre of mass would lie outside the torso",
+    ),
+    (
+        [-5.0, 5.0],
+        "metres per second; the robot walks at 1, and is knocked off its feet by 2",
+    ),
+    ([-5.0, 5.0], "metres per second; the robot walks at 1"),
+    (
+        [-20.0, 20.0],
+        "radians per second; three turns a second are 19",
+    ),
+    (
+        [-1.0, 1.0],
+        "a unit vector is observed, of which no more noise leaves anything",
+    ),
+    ([-3.2, 3.2], "radians; half a turn is 3.14"),
+    (
+        [-40.0, 40.0],
+        "radians per second; the fastest joints turn at 37",
+    ),
+];
+
 impl Default for RandomizationConfig {
     fn default() -> Self {
         Self {
@@ -118,23 +153,14 @@ impl Section for RandomizationConfig {
     fn validate(&self) -> Checked {
         self.strength.check("strength", invalid::share)?;
         invalid::share("plain_share", self.plain_share)?;
-        for (name, row) in ROWS.into_iter().zip(self.ranges()) {
+        for ((name, row), (limits, why)) in ROWS.into_iter().zip(self.ranges()).zip(LIMITS) {
             if let Some(row) = row {
-                within(name, range("range", row))?;
+                within(name, range_between("range", row, limits, why))?;
             }
         }
-        if let Some(mass) = self.mass_variation {
-            // The torso weighs 7.8 kg and has to keep a positive mass.
-            invalid::at_least("mass_variation.range[0]", mass.range[0], -7.0)?;
-        }
-        if let Some(friction) = self.friction {
-            invalid::at_least("friction.range[0]", friction.range[0], 0.0)?;
-        }
-        if let Some(push) = self.impulse {
-            range("impulse.seconds", push.seconds)?;
-            invalid::at_least("impulse.seconds[0]", push.seconds[0], 0.02)?;
-        }
-        Ok(())
+        let seconds = self.impulse.map_or(push_seconds(), |push| push.seconds);
+        let why = "seconds, from one control step to an hour";
+        range_between("impulse.seconds", seconds, [0.02, 3_600.0], why)
     }
 }
 

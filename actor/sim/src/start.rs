@@ -52,9 +52,12 @@ impl StartConfig {
     pub(crate) fn validate(&self) -> Checked {
         self.reference_share
             .check("reference_share", invalid::share)?;
-        invalid::at_least("lift", self.lift, 0.0)?;
-        invalid::at_least("position_noise", self.position_noise, 0.0)?;
-        invalid::at_least("velocity_noise", self.velocity_noise, 0.0)
+        let metres = "metres; from higher up every episode begins with a fall";
+        invalid::between("lift", self.lift, [0.0, 0.5], metres)?;
+        let radians = "radians; half a turn is 3.14";
+        invalid::between("position_noise", self.position_noise, [0.0, 3.2], radians)?;
+        let radians = "radians per second; the fastest joints turn at 37";
+        invalid::between("velocity_noise", self.velocity_noise, [0.0, 40.0], radians)
     }
 }
 

@@ -90,8 +90,10 @@ macro_rules! table {
             /// Checks every term; names the first bad parameter.
             pub(crate) fn validate(&self) -> vocabulary::Checked {
                 for (name, weight) in self.weights() {
-                    let not_negative = |path: &str, value| vocabulary::invalid::at_least(path, value, 0.0);
-                    vocabulary::invalid::within(name, weight.check("weight", not_negative))?;
+                    let usual = |path: &str, value| {
+                        vocabulary::invalid::between(path, value, [0.0, 1e6], "terms are weighed against each other")
+                    };
+                    vocabulary::invalid::within(name, weight.check("weight", usual))?;
                 }
                 $( if let Some(term) = &self.$name {
                     let checked = crate::terms::Term::validate(term);

@@ -81,6 +81,23 @@ pub fn range(path: &str, value: [f32; 2]) -> Checked {
     )
 }
 
+/// A number within limits; `why` says what they are.
+pub fn between(path: &str, value: f32, limits: [f32; 2], why: &str) -> Checked {
+    let [least, greatest] = limits;
+    let holds = (least..=greatest).contains(&value);
+    let remedy = format!("give a number from {least} to {greatest}: {why}");
+    require(holds, path, value, remedy)
+}
+
+/// A range that is finite, in order and within limits; `why` says what they are.
+pub fn range_between(path: &str, value: [f32; 2], limits: [f32; 2], why: &str) -> Checked {
+    range(path, value)?;
+    let [least, greatest] = limits;
+    let holds = least <= value[0] && value[1] <= greatest;
+    let remedy = format!("give a range within {least} to {greatest}: {why}");
+    require(holds, path, value, remedy)
+}
+
 /// A table inside a section, checked by its owner.
 pub fn within(table: &str, checked: Checked) -> Checked {
     checked.map_err(|invalid| invalid.inside(table))
@@ -110,5 +127,26 @@ mod tests {
         assert!(positive("x", 0.0).is_err() && positive("x", 1e-30).is_ok());
         assert!(range("x", [1.0, 1.0]).is_ok() && range("x", [2.0, 1.0]).is_err());
         assert!(share("x", 1.0).is_ok() && share("x", 1.001).is_err());
+    }
+
+    #[test]
+    fn limits_are_told_with_their_reason() {
+        let told = range_between("friction", [0.5, 9.0], [0.0, 3.0], "rubber has 1").unwrap_err();
+        assert_eq!(
+            told.to_string(),
+            "friction = [0.5, 9.0] is not usable: give a range within 0 to 3: rubber has 1"
+        );
+        for (range, holds) in [
+            ([0.0, 3.0], true),
+            ([-0.1, 3.0], false),
+            ([0.0, 3.1], false),
+            ([2.0, 1.0], false),
+            ([f32::NAN, 1.0], false),
+        ] {
+            assert_eq!(range_between("x", range, [0.0, 3.0], "").is_ok(), holds);
+        }
+        for (value, holds) in [(0.0, true), (3.0, true), (3.1, false), (f32::NAN, false)] {
+            assert_eq!(between("x", value, [0.0, 3.0], "").is_ok(), holds);
+        }
     }
 }

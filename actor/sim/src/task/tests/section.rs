@@ -73,6 +73,67 @@ fn what_cannot_be_used_is_told_by_its_path() {
 }
 
 #[test]
+fn what_no_robot_can_be_asked_for_is_told_with_the_reason() {
+    for (text, path, why) in [
+        (
+            "[command]\nforward = [0, 10.1]",
+            "command.forward",
+            "sprinter",
+        ),
+        ("[command]\nlateral = [-5.1, 0]", "command.lateral", "aside"),
+        (
+            "[command]\nyaw_rate = [0, 1e30]",
+            "command.yaw_rate",
+            "turn and a half",
+        ),
+        (
+            "[command]\nyaw_rate = { from = [0, 1], to = [0, 11], samples = [0, 1] }",
+            "command.yaw_rate.to",
+            "turn and a half",
+        ),
+        (
+            "[command]\nresample_seconds = [0, 3]",
+            "command.resample_seconds",
+            "to a day",
+        ),
+        (
+            "[command]\nresample_seconds = [3, 1e9]",
+            "command.resample_seconds",
+            "to a day",
+        ),
+        (
+            "[command]\nkinds = { forward = 1e30 }",
+            "command.kinds.forward",
+            "relative",
+        ),
+        ("[start]\nlift = 0.6", "start.lift", "fall"),
+        (
+            "[start]\nposition_noise = 3.3",
+            "start.position_noise",
+            "half a turn",
+        ),
+        ("[start]\nvelocity_noise = 41", "start.velocity_noise", "37"),
+        (
+            "[reward.track]\nweight = 1e30",
+            "reward.track.weight",
+            "weighed",
+        ),
+        ("[ground]\nslope = 6", "ground.slope", "degrees from 0 to 5"),
+        (
+            "[ground]\nbumps = -0.01",
+            "ground.bumps",
+            "metres from 0 to 0.02",
+        ),
+    ] {
+        let invalid = read(text).validate().unwrap_err();
+        assert_eq!(invalid.path, path, "{text}");
+        assert!(invalid.remedy.contains(why), "{text}: {invalid}");
+    }
+    let widest = "[command]\nforward = [-10, 10]\nlateral = [-5, 5]\nyaw_rate = [-10, 10]";
+    read(widest).validate().unwrap();
+}
+
+#[test]
 fn some_term_is_paid_at_every_time() {
     let task = |track: &str, wide: &str| {
         read(&format!(
