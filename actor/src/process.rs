@@ -155,7 +155,8 @@ fn obey(
             WeightsOrder::Collect => {}
             WeightsOrder::SaveThenCollect => worker.save(index, version, checkpoints),
             WeightsOrder::RestoreThenCollect => {
-                worker.restore_or_save(index, version, checkpoints);
+                let otherwise = "its episodes go on as they are";
+                worker.restore_or_save(index, version, checkpoints, otherwise);
             }
             WeightsOrder::SaveThenStop => {
                 worker.save(index, version, checkpoints);

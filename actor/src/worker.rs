@@ -11,7 +11,7 @@ use rand_pcg::Pcg64Mcg;
 use run::Checkpoints;
 use run::checkpoint::robots_of;
 use serde::{Deserialize, Serialize};
-use sim::Fleet;
+use sim::{Fleet, SimError};
 use tracing::{info, warn};
 
 use crate::collect::{Timing, collect};
@@ -62,50 +62,64 @@ impl Worker {
             generator: Pcg64Mcg::seed_from_u64(mix(seed, 0)),
         };
         if header.order() != Some(WeightsOrder::Collect) {
-            worker.restore_or_save(index, header.version, checkpoints);
+            worker.restore_or_save(index, header.version, checkpoints, "new episodes begin");
         }
         Ok(worker)
     }
 
     /// Takes the state that this actor had at checkpoint `version`. Where there is none, the run goes
-    /// on with the state as it is now, and so it belongs to the checkpoint: it is saved.
-    pub(crate) fn restore_or_save(&mut self, index: u32, version: u64, checkpoints: &Checkpoints) {
-        if !self.restore(index, version, checkpoints) {
+    /// on with the state as it is now, and so it belongs to the checkpoint: it is saved. `otherwise` says what is then.
+    pub(crate) fn restore_or_save(
+        &mut self,
+        index: u32,
+        version: u64,
+        checkpoints: &Checkpoints,
+        otherwise: &str,
+    ) {
+        if !self.restore(index, version, checkpoints, otherwise) {
             self.save(index, version, checkpoints);
         }
     }
 
     /// Whether there was a state to be taken; what cannot be read is left, and said: a checkpoint
     /// without an actor's fleet is still a good checkpoint.
-    fn restore(&mut self, index: u32, version: u64, checkpoints: &Checkpoints) -> bool {
-        let bytes = match checkpoints.attachment(version, &robots_of(index)) {
-            Ok(Some(bytes)) => bytes,
+    fn restore(
+        &mut self,
+        index: u32,
+        version: u64,
+        checkpoints: &Checkpoints,
+        otherwise: &str,
+    ) -> bool {
+        let decoded = match checkpoints.attachment(version, &robots_of(index)) {
             Ok(None) => {
                 info!(
                     version,
-                    "no snapshot of this actor; its episodes go on as they are"
+                    "the checkpoint has no robots of this actor: {otherwise}"
                 );
                 return false;
             }
-            Err(error) => {
-                warn!(version, %error, "snapshot of this actor refused; its episodes go on as they are");
-                return false;
-            }
+            Ok(Some(bytes)) => self.decode(&bytes),
+            Err(error) => Err(error.into()),
         };
-        match self.decode(&bytes) {
-            Ok(()) => {
-                info!(version, "fleet restored");
-                true
-            }
-            Err(error) => {
-                warn!(
-                    version,
-                    error = format!("{error:#}"),
-                    "snapshot of this actor refused; its episodes go on as they are"
-                );
-                false
-            }
+        let Err(error) = decoded else {
+            info!(version, "fleet restored");
+            return true;
+        };
+        let why = format!("{error:#}");
+        let other = error.downcast_ref::<SimError>();
+        if other.is_some_and(SimError::is_of_another_fleet) {
+            // `ampco train` has told of it, once for all actors.
+            info!(
+                version,
+                why, "the checkpoint's robots do not fit: {otherwise}"
+            );
+        } else {
+            warn!(
+                version,
+                why, "the checkpoint's robots cannot be read: {otherwise}"
+            );
         }
+        false
     }
 
     fn decode(&mut self, bytes: &[u8]) -> Result<()> {

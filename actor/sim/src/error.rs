@@ -26,12 +26,22 @@ pub enum SimError {
         /// Environments of this fleet.
         expected: usize,
     },
-    /// The snapshot is of the other physics engine, or of a program that kept more or less of each robot.
-    #[error(
-        "the snapshot is not of this fleet's physics, {expected:?}, as this program has it; continue it with the fleet.physics and the program that it began with"
-    )]
+    /// The snapshot is of the other physics engine.
+    #[error("the snapshot is of robots in {found:?}, this fleet's are in {expected:?}")]
     Engine {
+        /// Engine of the snapshot.
+        found: Physics,
         /// Engine of this fleet.
         expected: Physics,
     },
+    /// The snapshot is of a program that kept more or less of each robot.
+    #[error("the snapshot is of a program that kept more or less of each robot")]
+    Program,
+}
+
+impl SimError {
+    /// Whether a snapshot is good and of another fleet: as configured, and no fault of a disk or a program.
+    pub fn is_of_another_fleet(&self) -> bool {
+        matches!(self, Self::Count { .. } | Self::Engine { .. })
+    }
 }

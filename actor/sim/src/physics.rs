@@ -31,6 +31,16 @@ pub(crate) enum SavedBodies {
     Batched(dynamics::Saved),
 }
 
+impl SavedBodies {
+    /// The engine that they were in.
+    pub(crate) fn physics(&self) -> Physics {
+        match self {
+            Self::Rapier(_) => Physics::Rapier,
+            Self::Batched(_) => Physics::Batched,
+        }
+    }
+}
+
 // A macro only so that every call of the seam is a line.
 macro_rules! both {
     ($self:ident, $bodies:ident => $call:expr) => {

@@ -49,10 +49,12 @@ impl Fleet {
         if found != expected || !whole {
             return Err(SimError::Count { found, expected });
         }
+        let (found, expected) = (snapshot.bodies.physics(), self.physics);
+        if found != expected {
+            return Err(SimError::Engine { found, expected });
+        }
         if !self.bodies.restore(snapshot.bodies) {
-            return Err(SimError::Engine {
-                expected: self.physics,
-            });
+            return Err(SimError::Program);
         }
         self.environments = snapshot.environments;
         self.observations = snapshot.observations;

@@ -7,10 +7,11 @@ use anyhow::{Context, Result};
 use configuration::{presets, resolve};
 use run::checkpoint::CONFIG;
 use run::resume::{self, Change};
-use run::{Checkpoint, Config, Folder, metrics};
+use run::{Checkpoint, Config, FleetConfig, Folder, RunConfig, metrics};
 use serde::Deserialize;
 use terminal::console::say;
 use terminal::failure::usage;
+use wording::count;
 
 use super::{Ready, Train, check};
 
@@ -21,6 +22,8 @@ pub(super) struct GoingOn {
     changes: Vec<Change>,
     /// Why a newer checkpoint is not gone on from, if there is one.
     passed_over: Option<String>,
+    /// Why the checkpoint's robots are left behind, if they are.
+    anew: Option<String>,
     /// The configuration so far, for a checkpoint of an older program, which has none of its own.
     note: Option<Config>,
 }
@@ -31,7 +34,8 @@ impl Train {
         let before = present(&folder)?;
         let mut config = before.clone();
         if let Some(name) = &self.preset {
-            presets::lay_over(&mut config, name)?;
+            let notices = presets::lay_over(&mut config, name)?;
+            notices.iter().for_each(|notice| say(notice));
         }
         self.apply(&mut config)?;
         resolve::anchor_files(&mut config)?;
@@ -41,7 +45,9 @@ impl Train {
             None
         } else {
             let checkpoint = folder.checkpoints().open_whole(None)?;
-            Some(going_on(&folder, &checkpoint, before, &config)?)
+            let going_on = going_on(&folder, &checkpoint, before, &config)?;
+            has_more_to_do(&folder, going_on.iteration, &config, &resolved.run)?;
+            Some(going_on)
         };
         let motion = check(&config, &resolved)?;
         Ok(Ready {
@@ -83,6 +89,9 @@ impl Ready {
         let at = going_on.iteration + 1;
         for change in &going_on.changes {
             say(&format!("from iteration {at} on: {change}"));
+        }
+        if let Some(anew) = &going_on.anew {
+            say(&format!("from iteration {at} on: {anew}"));
         }
         for change in self.motion_differences()? {
             say(&format!(
@@ -126,7 +135,7 @@ fn going_on(
     let own = checkpoint.config()?;
     let note = own.is_none().then(|| before.clone());
     let mut learned = own.unwrap_or(before);
-    resolve::resolve(&mut learned)
+    let was = resolve::resolve(&mut learned)
         .with_context(|| format!("reading the configuration of checkpoint {iteration}"))?;
     let mut phase = Ok(1);
     let in_phase_two = || {
@@ -140,8 +149,58 @@ fn going_on(
         iteration,
         changes,
         passed_over: passed_over(folder, iteration)?,
+        anew: left_behind(&was.fleet, &config.section()?),
         note,
     })
+}
+
+/// Why the robots of a checkpoint do not fit the fleet that goes on, if they do not: the same as actors find.
+fn left_behind(was: &FleetConfig, is: &FleetConfig) -> Option<String> {
+    let mut why = Vec::new();
+    if was.physics != is.physics {
+        why.push(format!(
+            "they are in {}, and it is {} now",
+            engine(was),
+            engine(is)
+        ));
+    }
+    let [before, now] = [was, is].map(FleetConfig::environments_per_actor);
+    if before != now {
+        let before = count(before, "environment");
+        why.push(format!("each actor had {before}, and it has {now} now"));
+    }
+    (!why.is_empty()).then(|| {
+        let why = why.join("; ");
+        format!("the checkpoint's robots are left behind, new episodes begin: {why}")
+    })
+}
+
+/// The engine of a fleet as it is written.
+fn engine(fleet: &FleetConfig) -> String {
+    format!("{:?}", fleet.physics).to_lowercase()
+}
+
+/// Refuses an end that the run has passed: there would be nothing to do, and "complete" would pass for an answer.
+fn has_more_to_do(folder: &Folder, iteration: u64, config: &Config, run: &RunConfig) -> Result<()> {
+    let end = u64::from(run.iterations);
+    if end == 0 || iteration < end {
+        return Ok(());
+    }
+    if iteration == end {
+        say(&format!(
+            "run {} has reached its end already, iteration {end}; give a greater --iterations to go on",
+            folder.name()
+        ));
+        return Ok(());
+    }
+    let origin = config.origin("run.iterations").unwrap_or("the defaults");
+    Err(usage(format!(
+        "run {} is at iteration {iteration}, past the end that run.iterations = {} sets ({origin}); give the iteration to end \
+         at, counted from the run's first, as in --iterations {}, or --minutes",
+        folder.name(),
+        run.iterations,
+        iteration + 100,
+    )))
 }
 
 /// Why a run goes on from this iteration although a newer checkpoint is good by itself: what actors were to add to it is

@@ -249,3 +249,40 @@ fn a_damaged_configuration_is_refused_with_the_one_to_mend_it_by() {
         "{refused}"
     );
 }
+
+#[test]
+fn robots_that_do_not_fit_are_left_behind_in_a_sentence() {
+    let (_runs, folder) = run(true);
+    let anew = |set: &[&str]| resumed(&folder, set).unwrap().going_on.unwrap().anew;
+    // The smoke preset: 16 environments of two actors in rapier.
+    let both = anew(&["--actors", "1", "--set", "physics=batched"]).unwrap();
+    assert_eq!(
+        both,
+        "the checkpoint's robots are left behind, new episodes begin: they are in rapier, and it is batched now; each \
+         actor had 8 environments, and it has 16 now"
+    );
+    for (set, left) in [
+        (&[][..], false),
+        (&["--set", "fleet.steps=16"], false),
+        (&["--actors", "4", "--set", "fleet.environments=32"], false),
+        (&["--set", "fleet.environments=8"], true),
+    ] {
+        assert_eq!(anew(set).is_some(), left, "{set:?}");
+    }
+}
+
+#[test]
+fn an_end_that_is_passed_is_refused_with_the_iteration() {
+    let (_runs, folder) = run(true);
+    let refused = resumed(&folder, &["--iterations", "9"]).err().unwrap();
+    for part in ["at iteration 10", "run.iterations = 9", "--iterations 9"] {
+        assert!(refused.contains(part), "{refused}");
+    }
+    for open in [
+        &["--iterations", "10"][..],
+        &["--iterations", "11"],
+        &["--minutes", "1"],
+    ] {
+        assert!(resumed(&folder, open).is_ok(), "{open:?}");
+    }
+}
