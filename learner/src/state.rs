@@ -96,7 +96,8 @@ impl State {
         }
         if state.iteration == 0 && !config.run.from.is_empty() {
             let from = Path::new(&config.run.from);
-            state.begin_with(&Checkpoint::open(from)?, &config.tables)?;
+            let critic_first = config.learning.ppo.critic_first;
+            state.begin_with(&Checkpoint::open(from)?, &config.tables, critic_first)?;
             info!(from = %from.display(), "begun with the policy of another run");
         }
         run::metrics::truncate_after(&folder.metrics_path(), state.iteration)?;
@@ -105,7 +106,12 @@ impl State {
 
     /// Takes another run's policy over, and nothing else; of a shipped one what it has: the actor, and the critic unless
     /// it was shipped by an older program.
-    fn begin_with(&mut self, checkpoint: &Checkpoint, tables: &Tables) -> Result<()> {
+    fn begin_with(
+        &mut self,
+        checkpoint: &Checkpoint,
+        tables: &Tables,
+        critic_first: f64,
+    ) -> Result<()> {
         let theirs = lists(checkpoint)?;
         let ours = Print::of_actor(tables);
         if let Some(difference) = ours.difference(&Print::of_actor(&theirs)) {
@@ -114,8 +120,18 @@ impl State {
             );
         }
         let same_critic = Print::of_critic(tables) == Print::of_critic(&theirs);
-        if !same_critic {
-            info!("the critic is to see something else than that one did, and begins anew");
+        let new_critic = if !same_critic {
+            Some("is to see something else than that one did")
+        } else if checkpoint.part(LEARNING).is_none() && checkpoint.part(CRITIC).is_none() {
+            Some("does not come with that policy")
+        } else {
+            None
+        };
+        if let Some(why) = new_critic {
+            let samples = critic_first;
+            info!(
+                "the critic {why}: it begins anew, and learns alone for {samples} samples (ppo.critic_first)"
+            );
         }
         if let Some(part) = checkpoint.part(LEARNING).filter(|_| same_critic) {
             self.learning.load_policy(part).with_context(|| {

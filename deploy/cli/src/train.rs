@@ -1,20 +1,18 @@
 //! `ampco train`: from options to a running group.
 
+mod from;
 mod pictures;
 mod resumed;
 
 use std::path::Path;
 
-use amp::PolicyConfig;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use configuration::presets;
 use configuration::resolve::{self, Resolved};
-use judge::Kept;
 use motion::Dataset;
 use motion::dataset::Reference;
 use motion::quality::{Severity, line, severity};
-use observation::ObservationConfig;
 use protocol::RolloutLayout;
 use run::motion::Print;
 use run::{Config, Folder};
@@ -58,7 +56,7 @@ pub(crate) struct Train {
     /// million samples (ppo.critic_first)
     #[arg(long, value_name = "RUN|FOLDER", conflicts_with = "resume")]
     from: Option<String>,
-    /// Draw nothing at the end: else play.html (the policy at four commands) and curves.svg are written to the run's folder
+    /// Draw nothing at the end: else play.html (the policy at up to four commands) and curves.svg are written to the run's folder
     #[arg(long)]
     no_pictures: bool,
     /// Go on from the last checkpoint of --run, or of the newest run; without one, from its start. What is set otherwise
@@ -83,6 +81,7 @@ impl Train {
             return Err(taken(folder));
         }
         ready.tell()?;
+        resolved.notices.iter().for_each(|notice| say(notice));
         folder.note_motion(ready.iteration(), ready.motion.clone())?;
         let comment = format!(
             "Resolved configuration of run {}: every value, defaults included.\n\
@@ -112,51 +111,11 @@ impl Train {
 
     fn new_run(&self) -> Result<Ready> {
         let preset = presets::find(self.preset.as_deref().unwrap_or("ampco"))?;
+        preset.notices.iter().for_each(|notice| say(notice));
         let mut config = preset.config;
         self.apply(&mut config)?;
         if let Some(from) = &self.from {
-            let kept = Kept::open(&self.place, from)?;
-            let origin = format!("--from {from}");
-            let observation: ObservationConfig = config.section()?;
-            let tables = observation.tables().context("section [observation]")?;
-            let seen = observation::Print::of_actor(&kept.tables);
-            if let Some(difference) = seen.difference(&observation::Print::of_actor(&tables)) {
-                // A shipped policy has the first, a run's checkpoint the second.
-                let has = ["config.toml", run::checkpoint::CONFIG].map(|name| kept.path.join(name));
-                let has = has.iter().find(|path| path.exists()).unwrap_or(&kept.path);
-                return Err(usage(format!(
-                    "--from {from}: this run's policy is to see something else than that one does: {difference}; set \
-                     observation.actor as it was, `{}` has it",
-                    has.display()
-                )));
-            }
-            let other_critic = observation::Print::of_critic(&kept.tables)
-                != observation::Print::of_critic(&tables);
-            let without_critic = other_critic
-                || ["learning.bin", "critic.bin"]
-                    .iter()
-                    .all(|part| kept.part(part).is_err());
-            if without_critic && config.given("ppo.critic_first").is_none() {
-                config.put("ppo.critic_first", 1e6, &origin);
-            }
-            let own: PolicyConfig = config.section()?;
-            let theirs = &kept.learning.policy;
-            if (&own.hidden, &own.critic_hidden) != (&theirs.hidden, &theirs.critic_hidden) {
-                return Err(usage(format!(
-                    "--from {from}: its networks are policy.hidden={:?} and policy.critic_hidden={:?}; set both like that",
-                    theirs.hidden, theirs.critic_hidden
-                )));
-            }
-            if own.observation_clip != theirs.observation_clip {
-                say(&format!(
-                    "--from {from}: its observations were cut to ±{}, here it will be policy.observation_clip={}",
-                    theirs.observation_clip, own.observation_clip
-                ));
-            }
-            let path =
-                std::path::absolute(&kept.path).context("finding the policy to begin with")?;
-            let path = path.to_str().context("the path of --from is not text")?;
-            config.put("run.from", path, &origin);
+            from::begin_with(&self.place, from, &mut config)?;
         }
         resolve::anchor_files(&mut config)?;
         let resolved = resolve::resolve(&mut config)?;

@@ -32,19 +32,19 @@ pub(super) fn draw(place: &Place, folder: &Folder) {
     }
 }
 
-/// The page on which the newest policy follows four commands of its run, in the engine that it was trained in.
+/// The page on which the newest policy follows commands of its run, four at most, in the engine that it was trained in.
 fn page_of(place: &Place, folder: &Folder) -> Result<(PathBuf, String)> {
     let checkpoints = folder.checkpoints();
     let newest = checkpoints.list().pop().context("there is no checkpoint")?;
     let checkpoint = checkpoints.path(newest);
     let name = checkpoint.to_str().context("the run's path is not text")?;
     let subject = Subject::open(place, name)?;
-    let commands = four(&subject.task.command);
+    let commands = shown(&subject.task.command);
     let recording = record(
         &subject,
         &Show {
             seconds: SECONDS * commands.len() as f64,
-            commands: commands.to_vec(),
+            commands: commands.clone(),
             randomization: RandomizationConfig::default(),
             from_reference: false,
             mechanics: subject.mechanics,
@@ -59,6 +59,17 @@ fn page_of(place: &Place, folder: &Folder) -> Result<(PathBuf, String)> {
         shown += &format!("; it falls after {at:.1} s, and is put up again for the next");
     }
     Ok((path, shown))
+}
+
+/// What is shown of the commands that a run has asked for, each once: of a narrow range that is fewer than four.
+fn shown(commanded: &CommandConfig) -> Vec<[f32; 3]> {
+    let mut shown = Vec::new();
+    for command in four(commanded) {
+        if !shown.contains(&command) {
+            shown.push(command);
+        }
+    }
+    shown
 }
 
 /// Four commands that a run has asked for: at rest or slowest, in the middle, fastest, and one that turns, steps aside or
@@ -164,6 +175,23 @@ mod tests {
                 [-0.6, 0.0, 0.0],
                 [-0.2, 0.0, 0.0]
             ]
+        );
+    }
+
+    #[test]
+    fn each_command_is_shown_once() {
+        let straight = |forward| shown(&ranges(forward, [0.0; 2], [0.0; 2]));
+        let ahead = |speeds: &[f32]| -> Vec<[f32; 3]> {
+            speeds.iter().map(|speed| [*speed, 0.0, 0.0]).collect()
+        };
+        assert_eq!(straight([0.5; 2]), ahead(&[0.5]));
+        // All of it is 0.5 to a hundredth.
+        assert_eq!(straight([0.499, 0.501]), ahead(&[0.5]));
+        assert_eq!(straight([0.4, 1.2]), ahead(&[0.4, 0.8, 1.2]));
+        assert_eq!(straight([0.0; 2]), ahead(&[0.0]));
+        assert_eq!(
+            shown(&ranges([0.5; 2], [0.0; 2], [-1.0, 1.0])),
+            [[0.5, 0.0, 0.0], [0.5, 0.0, 1.0]]
         );
     }
 
