@@ -158,6 +158,8 @@ fn mistakes_are_named_with_what_was_meant() {
     config.write("a.toml", "on = \"b.toml\"");
     config.write("b.toml", "on = \"a.toml\"");
     config.write("gone.toml", "[ppo]\nkl_band = 2.0");
+    config.write("deep/other.toml", "");
+    config.write("picture.toml", "GIF8");
     for (arguments, parts) in [
         (
             &["agil"][..],
@@ -171,11 +173,71 @@ fn mistakes_are_named_with_what_was_meant() {
         (&["a.toml"], ["circle", "b.toml on"]),
         (&["gone.toml"], ["kl_band", "always 1.5"]),
         (&["./nowhere"], ["nowhere", "is not a folder"]),
+        (&[""], ["name of the preset is empty", "a file"]),
+        (
+            &["deep"],
+            ["`deep` is a folder without config.toml", "TOML file"],
+        ),
+        (&["./deep"], ["`./deep` is a folder", "a run's name"]),
+        (
+            &["/dev/null"],
+            ["`/dev/null` is no file", "standard input, as `-`"],
+        ),
+        (&["picture.toml"], ["picture.toml", "a picture (GIF)"]),
     ] {
         let said = config.refused(arguments);
         assert!(parts.iter().all(|part| said.contains(part)), "{said}");
         assert_eq!(said.lines().count(), 1, "{said}");
     }
+}
+
+#[test]
+fn what_is_taken_of_several_of_one_name_is_told() {
+    let config = Config::new();
+    let told = |name: &str| {
+        let (success, said, told) = config.run(&[name]);
+        assert!(success, "{told}");
+        (said.lines().next().unwrap_or_default().to_owned(), told)
+    };
+    config.write("smoke/config.toml", "[ppo]\nepochs = 9");
+    let run = config.0.run("smoke").display().to_string();
+    let (said, other) = told("smoke");
+    assert!(said.starts_with("# preset smoke: "), "{said}");
+    assert_eq!(
+        other,
+        format!("`smoke` is the preset here; the run is {run}\n")
+    );
+    assert!(told(&run).0.starts_with("# run smoke: "));
+    config.write("agile", "on = \"smoke\"");
+    let (said, other) = told("agile");
+    assert!(said.starts_with("# preset agile: "), "{said}");
+    assert_eq!(other, "`agile` is the preset here; the file is ./agile\n");
+    let (said, other) = told("./agile");
+    assert!(
+        said.contains("/agile: ") && other.is_empty(),
+        "{said} {other}"
+    );
+}
+
+#[test]
+fn a_preset_is_read_from_standard_input_and_one_that_says_nothing_is_told() {
+    let config = Config::new();
+    let file = config.write("in.toml", "on = \"smoke\"\n[ppo]\nepochs = 9\n");
+    let mut command = Command::new(program("ampco"));
+    command.args(["config", "-", "--diff", "smoke"]);
+    command.stdin(fs::File::open(file).expect("opened"));
+    let output = command.output().expect("ended");
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success() && said.contains("epochs = 9 # standard input"),
+        "{said}"
+    );
+    config.write("comment.toml", "# [ppo]");
+    let (success, _, told) = config.run(&["comment.toml"]);
+    assert!(
+        success && told.contains("comment.toml: nothing is set in it"),
+        "{told}"
+    );
 }
 
 #[test]

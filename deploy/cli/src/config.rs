@@ -7,12 +7,14 @@ mod show;
 
 use std::path::Path;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use clap::Args;
 use configuration::keys::Key;
 use configuration::{keys, presets, resolve};
+use observation::ObservationConfig;
 use run::Config;
 use serde_json::json;
+use terminal::console::say;
 use terminal::failure::usage;
 use terminal::{Place, console};
 
@@ -22,7 +24,7 @@ use terminal::{Place, console};
 /// file, a run, or nowhere (default).
 #[derive(Debug, Args)]
 pub(crate) struct Show {
-    /// A preset, a TOML file, or a run's name or folder [default: ampco]
+    /// A preset, a TOML file (- reads it from standard input), or a run's name or folder [default: ampco]
     #[arg(value_name = "PRESET|FILE|RUN")]
     of: Option<String>,
     /// Only what is another in this one
@@ -86,31 +88,71 @@ impl Show {
     fn open(&self, given: &str) -> Result<Shown> {
         let mut shown = self.find(given)?;
         resolve::settle_all(&mut shown.config)?;
+        let observation: ObservationConfig = shown.config.section()?;
+        let tables = observation.tables().context("section [observation]")?;
+        tables.oddities().iter().for_each(|oddity| say(oddity));
         Ok(shown)
     }
 
+    /// A preset, else a file, else a run. What else has the same name is told.
     fn find(&self, given: &str) -> Result<Shown> {
-        if presets::names().contains(&given) || Path::new(given).is_file() {
+        let runs = run::folder::list(&self.place.runs_dir);
+        let path = Path::new(given);
+        let plain = path.components().count() == 1 && path.file_name().is_some();
+        let is_run = plain && runs.iter().any(|run| run == given);
+        let ours = presets::names().contains(&given);
+        let is_file = path.is_file();
+        let run = self.place.runs_dir.join(given);
+        let stdin = given == presets::STANDARD_INPUT;
+        if ours || is_file || stdin || given.is_empty() {
+            let mut others = Vec::new();
+            if ours && is_file {
+                others.push(format!("the file is ./{given}"));
+            }
+            if is_run {
+                others.push(format!("the run is {}", run.display()));
+            }
             let preset = presets::find(given)?;
+            preset.notices.iter().for_each(|notice| say(notice));
+            if !others.is_empty() {
+                let what = if ours { "preset" } else { "file" };
+                say(&format!(
+                    "`{given}` is the {what} here; {}",
+                    others.join(", ")
+                ));
+            }
             return Ok(Shown {
                 name: preset.origin,
-                on: Some(given.to_owned()),
+                on: (!stdin).then(|| given.to_owned()),
                 config: preset.config,
                 run: None,
             });
         }
-        let runs = run::folder::list(&self.place.runs_dir);
-        let is_path = Path::new(given).components().count() > 1;
-        if !is_path && !runs.iter().any(|run| run == given) {
+        // A folder beside us, where no run of the folder of runs has its name.
+        let beside = plain && !is_run && path.is_dir();
+        if !is_run && path.exists() && !path.join("config.toml").is_file() {
+            let what = if path.is_dir() {
+                "a folder without config.toml, neither a preset nor a run; give a TOML file, or a run's name or folder"
+            } else {
+                presets::no_file(path).unwrap_or("no preset and no run")
+            };
+            return Err(usage(format!("`{}` is {what}", wording::line(given))));
+        }
+        if plain && !is_run && !beside {
             let runs = runs.iter().map(String::as_str);
             let known: Vec<&str> = presets::names().into_iter().chain(runs).collect();
             return Err(usage(format!(
                 "there is no preset, no file and no run `{}`; {}",
                 wording::line(given),
-                run::nearest::remedy(given, &known)
+                wording::nearest::remedy(given, &known)
             )));
         }
-        let folder = self.place.find(Some(given))?;
+        let place = if beside {
+            format!("./{given}")
+        } else {
+            given.to_owned()
+        };
+        let folder = self.place.find(Some(&place))?;
         let name = format!("run {}", folder.name());
         Ok(Shown {
             config: folder.config()?,
