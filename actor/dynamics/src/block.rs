@@ -161,6 +161,12 @@ impl<T: Real> Block<T> {
         let number = |row: usize| rows[row].0[lane].to_f64() as f32;
         let vector = |row: usize| Vector3::new(number(row), number(row + 1), number(row + 2));
         let q = row::QUATERNION;
+        // Not by a function of the index, which becomes a call for each joint of every robot and step.
+        let (mut positions, mut velocities) = ([0.0; JOINTS], [0.0; JOINTS]);
+        for i in 0..JOINTS {
+            positions[i] = number(row::JOINT + i);
+            velocities[i] = number(row::SPEED + i);
+        }
         RobotState {
             position: vector(row::POSITION),
             orientation: UnitQuaternion::new_unchecked(Quaternion::new(
@@ -171,8 +177,8 @@ impl<T: Real> Block<T> {
             )),
             linear_velocity: vector(row::LINEAR),
             angular_velocity: vector(row::ANGULAR),
-            joint_positions: std::array::from_fn(|i| number(row::JOINT + i)),
-            joint_velocities: std::array::from_fn(|i| number(row::SPEED + i)),
+            joint_positions: positions,
+            joint_velocities: velocities,
         }
     }
 }

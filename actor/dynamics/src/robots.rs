@@ -119,6 +119,7 @@ impl Robots {
     }
 
     /// A robot's state.
+    #[inline]
     pub fn state(&self, robot: usize) -> RobotState {
         let (block, lane) = self.place(robot);
         self.blocks[block].state(lane)
@@ -133,6 +134,7 @@ impl Robots {
     }
 
     /// Target positions of a robot's joints, rad, until others are given.
+    #[inline]
     pub fn set_targets(&mut self, robot: usize, targets: &[f32; JOINTS]) {
         let (block, lane) = self.place(robot);
         for (row, target) in self.targets[block].iter_mut().zip(targets) {
@@ -158,6 +160,7 @@ impl Robots {
     }
 
     /// What the last [`Robots::advance`] took from a robot and felt, over its `steps`.
+    #[inline]
     pub fn effort(&self, robot: usize, steps: usize) -> Effort {
         let (block, lane) = self.place(robot);
         let tally = &self.tallies[block];
@@ -180,6 +183,7 @@ impl Robots {
 
     /// Whether a robot's numbers can be used after the last [`Robots::advance`]: finite, and no faster than anything
     /// real.
+    #[inline]
     pub fn is_sound(&self, robot: usize) -> bool {
         let (block, lane) = self.place(robot);
         let tally = &self.tallies[block];
@@ -210,6 +214,7 @@ impl Robots {
         whole
     }
 
+    #[inline]
     fn place(&self, robot: usize) -> (usize, usize) {
         assert!(robot < self.count, "robot {robot} of {}", self.count);
         (robot / LANES, robot % LANES)

@@ -139,7 +139,8 @@ impl Environment {
     ) -> bool {
         self.steps += 1;
         self.age += 1;
-        if action.iter().any(|a| !a.is_finite()) {
+        // All numbers, without a way out at the first: many at a time.
+        if !action.iter().fold(true, |all, a| all & a.is_finite()) {
             return false;
         }
         if count_down(&mut self.push_in) {

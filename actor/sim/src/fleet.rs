@@ -233,7 +233,7 @@ impl Fleet {
             out.tracking_errors[i] = outcome.tracking_error;
             out.ends[i] = outcome.end.map_or(RUNNING, Cause::code);
             out.episode_steps[i] = environment.steps() as f32;
-            out.foot_forces[2 * i..][..2].copy_from_slice(&outcome.foot_forces);
+            out.foot_forces.as_chunks_mut().0[i] = outcome.foot_forces;
             let next_features = &mut out.next_features[i * widths.features..][..widths.features];
             judged(&self.setting.tables, environment.state(), next_features);
             if widths.measured > 0 {

@@ -83,6 +83,7 @@ impl Bodies {
     }
 
     /// Target positions of the coming control step, rad.
+    #[inline]
     pub(crate) fn set_targets(&mut self, robot: usize, targets: &[f32; JOINTS]) {
         both!(self, bodies => bodies.set_targets(robot, targets));
     }
@@ -94,6 +95,7 @@ impl Bodies {
 
     /// Positive work of the motors (J) and vertical forces on the soles (N) in the last control step:
     /// what every step asks for.
+    #[inline]
     pub(crate) fn work_and_forces(&self, robot: usize) -> (f32, [f32; 2]) {
         both!(self, bodies => bodies.work_and_forces(robot))
     }
@@ -103,11 +105,13 @@ impl Bodies {
         both!(self, bodies => bodies.exertion(robot))
     }
 
+    #[inline]
     pub(crate) fn state(&self, robot: usize) -> RobotState {
         both!(self, bodies => bodies.state(robot))
     }
 
     /// Whether a robot's state can be used.
+    #[inline]
     pub(crate) fn is_sound(&self, robot: usize) -> bool {
         both!(self, bodies => bodies.is_sound(robot))
     }

@@ -43,13 +43,15 @@ pub fn policy_observation(
 ) {
     let out: &mut [f32; OBSERVATION] = out.try_into().expect("an observation has 82 numbers");
     write_base(state, out);
-    put(out, GRAVITY, &state.projected_gravity());
-    out[COMMAND].copy_from_slice(command);
-    for (i, relative) in out[JOINT_POSITION].iter_mut().enumerate() {
-        *relative = state.joint_positions[i] - DEFAULT_POSE[i];
+    put(out, GRAVITY, &state.projected_gravity().into());
+    put(out, COMMAND, command);
+    let mut relative = state.joint_positions;
+    for (position, default) in relative.iter_mut().zip(DEFAULT_POSE) {
+        *position -= default;
     }
-    out[JOINT_VELOCITY].copy_from_slice(&state.joint_velocities);
-    out[PREVIOUS_ACTION].copy_from_slice(previous_action);
+    put(out, JOINT_POSITION, &relative);
+    put(out, JOINT_VELOCITY, &state.joint_velocities);
+    put(out, PREVIOUS_ACTION, previous_action);
 }
 
 /// Writes what the discriminator sees of a state into `out` (53 numbers).
@@ -62,8 +64,8 @@ pub fn features(state: &RobotState, out: &mut [f32]) {
         .try_into()
         .expect("the features of a step are 53 numbers");
     write_base(state, out);
-    out[FEATURE_JOINT_POSITION].copy_from_slice(&state.joint_positions);
-    out[FEATURE_JOINT_VELOCITY].copy_from_slice(&state.joint_velocities);
+    put(out, FEATURE_JOINT_POSITION, &state.joint_positions);
+    put(out, FEATURE_JOINT_VELOCITY, &state.joint_velocities);
 }
 
 /// The state that [`features`] were written of, given the direction of gravity in the base frame:
@@ -96,16 +98,19 @@ pub fn state_of(features: &[f32], gravity: [f32; 3]) -> RobotState {
 #[inline]
 fn write_base<const N: usize>(state: &RobotState, out: &mut [f32; N]) {
     out[HEIGHT] = state.position.z;
-    put(out, LINEAR_VELOCITY, &state.velocity_in_base());
-    put(out, ANGULAR_VELOCITY, &state.angular_velocity_in_base());
+    put(out, LINEAR_VELOCITY, &state.velocity_in_base().into());
+    put(
+        out,
+        ANGULAR_VELOCITY,
+        &state.angular_velocity_in_base().into(),
+    );
 }
 
-/// Number by number: a copy of a vector or its slice becomes a call.
+/// As arrays: a copy of a slice is a call, whose length is known only at run time.
 #[inline]
-fn put<const N: usize>(out: &mut [f32; N], place: Range<usize>, vector: &Vector3<f32>) {
-    out[place.start] = vector.x;
-    out[place.start + 1] = vector.y;
-    out[place.start + 2] = vector.z;
+fn put<const N: usize, const M: usize>(out: &mut [f32; N], place: Range<usize>, from: &[f32; M]) {
+    let to = out[place].as_mut_array().expect("a place for each number");
+    *to = *from;
 }
 
 #[cfg(test)]

@@ -26,6 +26,7 @@ pub(crate) struct Setting {
 
 impl Setting {
     /// A state of an engine as it is told.
+    #[inline]
     pub(super) fn told(&self, state: RobotState) -> RobotState {
         match &self.ground {
             None => state,

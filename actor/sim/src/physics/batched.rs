@@ -54,6 +54,7 @@ impl Batched {
         self.0.push(robot, change);
     }
 
+    #[inline]
     pub(crate) fn set_targets(&mut self, robot: usize, targets: &[f32; JOINTS]) {
         self.0.set_targets(robot, targets);
     }
@@ -62,6 +63,7 @@ impl Batched {
         self.0.advance(SUBSTEPS);
     }
 
+    #[inline]
     pub(crate) fn work_and_forces(&self, robot: usize) -> (f32, [f32; 2]) {
         let effort = self.0.effort(robot, SUBSTEPS);
         (effort.energy, effort.foot_forces)
@@ -81,10 +83,12 @@ impl Batched {
         }
     }
 
+    #[inline]
     pub(crate) fn state(&self, robot: usize) -> RobotState {
         self.0.state(robot)
     }
 
+    #[inline]
     pub(crate) fn is_sound(&self, robot: usize) -> bool {
         self.0.is_sound(robot)
     }

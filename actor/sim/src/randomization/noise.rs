@@ -96,15 +96,14 @@ impl Block {
         for (i, place) in words.iter_mut().enumerate() {
             *place = word(key, first + i as u32);
         }
-        let rows = numbers.as_chunks_mut::<WORDS>().0.iter_mut();
-        let ranges = self.least.as_chunks().0.iter().zip(self.span.as_chunks().0);
-        for (half, (numbers, (least, span))) in rows.zip(ranges).enumerate() {
-            let (least, span): (&[f32; WORDS], &[f32; WORDS]) = (least, span);
+        for half in 0..NUMBERS / WORDS {
+            let place = half * WORDS;
             for i in 0..WORDS {
                 // Each half of a random word is as random as the other. Signed, for which alone all vectors have an
                 // instruction.
                 let level = ((words[i] >> (16 * half)) & 0xffff) as i32;
-                numbers[i] += least[i] + span[i] * ((level as f32 + 0.5) / LEVELS);
+                let share = (level as f32 + 0.5) / LEVELS;
+                numbers[place + i] += self.least[place + i] + self.span[place + i] * share;
             }
         }
     }
