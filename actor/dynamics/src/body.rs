@@ -3,6 +3,7 @@
 //! Separate because this is what happens to every body alike; the walk over the tree is in
 //! [`crate::kinematics`].
 
+use crate::capsules::Capsules;
 use crate::lane::{Lane, afresh};
 use crate::spatial::{Inertia, Rotation, Spatial, Symmetric, Vec3};
 use crate::tree::{Hinge, POINTS, Tree};
@@ -94,20 +95,19 @@ impl<L: Lane> Frame<L> {
         }
     }
 
-    /// Where the ends of a body's capsule are, if it has one that meets others.
+    /// Where the ends of a body's capsule are, if it has one.
     #[inline(always)]
     pub(crate) fn span(
         &self,
         token: L::Token,
-        tree: &Tree<L::Scalar>,
+        capsules: &Capsules<L::Scalar>,
         body: usize,
-        capsules: &mut [[Vec3<L>; 2]; CAPSULES],
+        ends: &mut [[Vec3<L>; 2]; CAPSULES],
     ) {
-        if let Some(capsule) = tree.capsule_of[body] {
-            for (to, at) in capsules[capsule].iter_mut().zip(tree.ends[capsule]) {
-                *to = self
-                    .orientation
-                    .turn_add(Vec3::splat(token, at), self.position);
+        if let Some(capsule) = capsules.of_body[body] {
+            for end in 0..2 {
+                let at = Vec3::splat(token, capsules.ends[capsule][end]);
+                ends[capsule][end] = self.orientation.turn_add(at, self.position);
             }
         }
     }

@@ -203,8 +203,10 @@ impl<L: Lane> Contacts<L> {
         }
         let mut soles = [zero; SOLES];
         for contact in &self.list[..self.of_limb[LIMBS - 1].1] {
+            // As an array: a copy of a slice would be a call.
             let first = row::IMPULSE + 3 * contact.point;
-            state[first..first + 3].copy_from_slice(&contact.impulse);
+            let rows = state[first..first + 3].as_mut_array();
+            *rows.expect("a normal and two tangents") = contact.impulse;
             if contact.point < SOLE_POINTS {
                 let foot = contact.point / 4;
                 soles[foot] = soles[foot] + contact.impulse[0];

@@ -118,7 +118,9 @@ impl<L: Lane> Walk<L> {
             .weigh(&self.velocities[links::TORSO], |i| group.torso[i]);
         let (frame, points) = (afresh(&self.torso.frame), &mut self.points);
         frame.place(token, tree, links::TORSO, points);
-        frame.span(token, tree, links::TORSO, &mut self.capsules);
+        if tree.collides {
+            frame.span(token, &tree.capsules, links::TORSO, &mut self.capsules);
+        }
         for limb in 2..LIMBS {
             self.limb::<TRUNK, 5>(token, tree, group, limb);
             self.torso
@@ -210,7 +212,12 @@ impl<L: Lane> Walk<L> {
             let numbers = &tree.inertials[body];
             this[0].weigh(&self.velocities[body], |i| L::splat(token, numbers[i]));
             this[0].frame.place(token, tree, body, &mut self.points);
-            this[0].frame.span(token, tree, body, &mut self.capsules);
+        }
+        if tree.collides {
+            for (k, body) in self.bodies[..COUNT].iter().enumerate() {
+                let frame = afresh(&body.frame);
+                frame.span(token, &tree.capsules, first + k + 1, &mut self.capsules);
+            }
         }
         each!(K in [5 4 3 2 1 0] {
             if K < COUNT {

@@ -16,6 +16,7 @@
 //! | one robot in double precision, and its equations of motion | [`reference`] |
 //! | one step | `step` |
 //! | bodies: place, motion, inertia | `body` |
+//! | capsules that meet, and what tells that they are apart | `capsules` |
 //! | bias forces and the mass matrix | `kinematics` |
 //! | LᵀDL along the tree | `factor` |
 //! | contacts | `contact` |
@@ -32,6 +33,7 @@
 
 pub mod block;
 mod body;
+mod capsules;
 mod contact;
 pub mod drive;
 mod factor;

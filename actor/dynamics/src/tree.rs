@@ -5,8 +5,8 @@
 //! (3, world frame) and 23 joint speeds: 29 numbers. Seen from its end every limb hangs on a chain of
 //! twelve: a leg on the base's 6 and its own 6, an arm on the base's 6, the waist and its own 5.
 
+use crate::capsules::Capsules;
 use crate::lane::Real;
-use g1::collision::{CAPSULE_TABLE, CAPSULES};
 use g1::{BODIES, JOINT_TABLE, JOINTS, LEFT_FOOT, LINK_TABLE, RIGHT_FOOT, joints, links};
 use nalgebra::Rotation3;
 
@@ -165,25 +165,16 @@ pub(crate) struct Tree<T> {
     pub(crate) weights: [T; POINTS],
     /// Whether the robot's parts meet each other.
     pub(crate) collides: bool,
-    /// The capsule of every body that has one and whose parts meet others.
-    pub(crate) capsule_of: [Option<usize>; BODIES],
-    /// Ends of the capsules in the link frame, m.
-    pub(crate) ends: [[[T; 3]; 2]; CAPSULES],
-    /// Squares of the lengths of their segments, m².
-    pub(crate) squares: [T; CAPSULES],
+    /// What meets if they do.
+    pub(crate) capsules: Capsules<T>,
 }
 
 impl<T: Real> Tree<T> {
     /// With the points' weights, 1/kg, which take a solver to find: [`crate::contact::tree`].
     pub(crate) fn weighed(weights: [f64; POINTS], self_collision: bool) -> Self {
-        let capsule = |body| {
-            let mut bodies = CAPSULE_TABLE.iter().map(|capsule| capsule.body);
-            bodies.position(|of| of == body).filter(|_| self_collision)
-        };
         Self {
             weights: weights.map(T::of),
             collides: self_collision,
-            capsule_of: std::array::from_fn(capsule),
             ..Self::weightless()
         }
     }
@@ -227,12 +218,7 @@ impl<T: Real> Tree<T> {
             order,
             weights: [T::default(); POINTS],
             collides: false,
-            capsule_of: [None; BODIES],
-            ends: CAPSULE_TABLE.map(|capsule| capsule.ends.map(|end| end.map(T::of))),
-            squares: CAPSULE_TABLE.map(|capsule| {
-                let [from, to] = capsule.ends;
-                T::of((0..3).map(|axis| (to[axis] - from[axis]).powi(2)).sum())
-            }),
+            capsules: Capsules::new(),
         }
     }
 }

@@ -1,12 +1,14 @@
 //! Contacts of the robot with itself: capsules of limbs and trunk that meet.
 //!
 //! Separate because two chains feel such a contact, and the base does not: what one part is pushed the other is pushed
-//! back. Along the normal it is as soft as the ground; across it there is nothing, for the shells slide. Pairs that a
-//! plane across the pelvis' left–right axis keeps apart in every lane are passed over, and they are nearly all of them
-//! nearly always: this keeps the whole to a few hundredths of a step.
+//! back. Along the normal it is as soft as the ground; across it there is nothing, for the shells slide. Pairs that are
+//! apart in every lane are passed over, and they are nearly all of them nearly always: this keeps the whole to a few
+//! hundredths of a step. A plane across the pelvis' left–right axis tells it of legs and arms beside each other, the
+//! middle of one part of a forearm and the thigh below it.
 
 use super::Touch;
 use super::normal::normal;
+use crate::capsules::Pair;
 use crate::factor::Factor;
 use crate::kinematics::Walk;
 use crate::lane::Lane;
@@ -15,8 +17,6 @@ use crate::tree::{BASE, DEGREES, Tree};
 use g1::LINK_TABLE;
 use g1::collision::{CAPSULE_TABLE, CAPSULES, PAIR_TABLE, PAIRS};
 
-/// Parts further from each other than this across the pelvis are not looked at, m: what 6 m/s cover in a step of 5 ms.
-const MARGIN: f64 = 0.03;
 /// Share of the middle of a segment in its nearest point, where two are parallel and all points are as near: the
 /// nearest point of two that nearly are must not jump from end to end.
 const CENTRING: f64 = 1e-4;
@@ -82,6 +82,10 @@ impl<L: Lane> Pairs<L> {
         let reach = across(touch, walk);
         for (pair, &[a, b]) in PAIR_TABLE.iter().enumerate() {
             let near = reach[a].0.less(reach[b].1);
+            if !touch.dt.any(near) {
+                continue;
+            }
+            let near = touch.dt.both(near, beside(touch, walk, pair));
             if touch.dt.any(near) {
                 self.meet(touch, walk, factor, pair, near);
             }
@@ -168,14 +172,34 @@ impl<L: Lane> Pairs<L> {
 fn across<L: Lane>(touch: &Touch<'_, L>, walk: &Walk<L>) -> [(L, L); CAPSULES] {
     let mut reach = [(touch.dt, touch.dt); CAPSULES];
     for capsule in 0..CAPSULES {
-        let [from, to] = walk.capsules[capsule].map(|end| end.dot(walk.left));
-        let radius = CAPSULE_TABLE[capsule].radius;
+        let [from, to] = &walk.capsules[capsule];
+        let (from, to) = (from.dot(walk.left), to.dot(walk.left));
+        let capsules = &touch.tree.capsules;
         reach[capsule] = (
-            from.min(to) - from.lit(radius),
-            from.max(to) + from.lit(radius + MARGIN),
+            from.min(to) - L::splat(touch.token, capsules.radii[capsule]),
+            from.max(to) + L::splat(touch.token, capsules.reaches[capsule]),
         );
     }
     reach
+}
+
+/// Lanes in which the middle of a pair's shorter segment is so near to the longer one that they might touch.
+#[inline(always)]
+fn beside<L: Lane>(touch: &Touch<'_, L>, walk: &Walk<L>, pair: usize) -> L::Mask {
+    let number = |x: L::Scalar| L::splat(touch.token, x);
+    let Pair {
+        long,
+        short,
+        inverse,
+        apart,
+    } = touch.tree.capsules.pairs[pair];
+    let ([from, to], [p, q]) = (&walk.capsules[long], &walk.capsules[short]);
+    let (zero, one) = (touch.dt.lit(0.0), touch.dt.lit(1.0));
+    let middle = p.add(*q).scale(touch.dt.lit(0.5));
+    let (along, off) = (to.sub(*from), middle.sub(*from));
+    let share = (along.dot(off) * number(inverse)).max(zero).min(one);
+    let off = along.scale_add(-share, off);
+    off.dot(off).less(number(apart))
 }
 
 /// Nearest points of two segments (Ericson, *Real-Time Collision Detection*, 2005, section 5.1.9), of all lanes without
@@ -190,7 +214,7 @@ pub(super) fn nearest<L: Lane>(
     let [a, b] = PAIR_TABLE[pair];
     let ([p, p_end], [q, q_end]) = (walk.capsules[a], walk.capsules[b]);
     let (u, v, r) = (p_end.sub(p), q_end.sub(q), p.sub(q));
-    let [uu, vv] = [a, b].map(|capsule| L::splat(token, tree.squares[capsule]));
+    let [uu, vv] = [a, b].map(|capsule| L::splat(token, tree.capsules.squares[capsule]));
     let (uv, ur, vr) = (u.dot(v), u.dot(r), v.dot(r));
     let (zero, one) = (uu.lit(0.0), uu.lit(1.0));
     let within = |share: L| share.max(zero).min(one);

@@ -103,6 +103,52 @@ fn nearest_points_are_those_of_geometry() {
 }
 
 #[test]
+fn what_is_passed_over_is_at_least_the_margin_apart() {
+    let mut random = Pcg64Mcg::seed_from_u64(8);
+    let tree = contact::tree::<f64>(true);
+    let touch = Touch {
+        token: (),
+        tree: &tree,
+        ground: &Ground::Plane,
+        dt: 0.005,
+        friction: 1.0,
+    };
+    let mut group = Group::<f64>::new(());
+    let mut walk = Walk::new(());
+    let mut block = Block::<f64>::new();
+    let (mut near, mut over) = (0, [0; PAIRS]);
+    for _ in 0..2_000 {
+        let mut state = RobotState::standing();
+        for q in &mut state.joint_positions {
+            *q += random.random_range(-0.8..0.8_f32);
+        }
+        block.set_state(0, &state);
+        group.load((), &block, &[Row::default(); JOINTS], 0);
+        walk.run((), &tree, &group);
+        let bodies = kinematics::forward_state(&state);
+        let reach = across(&touch, &walk);
+        for (pair, &[a, b]) in PAIR_TABLE.iter().enumerate() {
+            let distance = gap(&bodies, pair).distance;
+            let [plane, middle] = [reach[a].0 < reach[b].1, beside(&touch, &walk, pair)];
+            // 3 cm are what 6 m/s cover in 5 ms; single precision is off by less than 1e-5 m.
+            if distance < 0.03 - 1e-5 {
+                near += 1;
+                assert!(
+                    plane && middle,
+                    "pair {pair} at {distance} m: {plane} {middle}"
+                );
+            }
+            over[pair] += usize::from(!middle);
+        }
+    }
+    assert!(near > 500, "{near} near pairs are too few to tell");
+    // A forearm is above the thigh on its side in nearly every pose: the plane cannot tell, the middle does.
+    for pair in [11, 14] {
+        assert!(over[pair] > 1_000, "pair {pair}: {}", over[pair]);
+    }
+}
+
+#[test]
 fn what_is_apart_is_as_if_it_could_not_meet() {
     let run = |self_collision| {
         let mut robot = limp(&inward(0.02, 0.0), self_collision);
