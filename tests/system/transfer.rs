@@ -33,6 +33,7 @@ fn what_is_exported_walks_in_mujoco_by_the_tests_of_the_transfer() {
             "unittest",
             "transfer.test_transfer",
             "transfer.test_table",
+            "transfer.test_alone",
         ])
         .current_dir(repository().join("deploy"))
         .env("PYTHONDONTWRITEBYTECODE", "1")

@@ -86,6 +86,14 @@ impl CommandConfig {
         }
     }
 
+    /// All that is ever asked for: forward and leftward velocity (m/s), yaw rate (rad/s), least and greatest each.
+    pub fn widest(&self) -> [[f32; 2]; 3] {
+        [self.forward, self.lateral, self.yaw_rate].map(|range| {
+            let [from, to] = [range.at(0.0), range.at(f64::INFINITY)];
+            [from[0].min(to[0]), from[1].max(to[1])]
+        })
+    }
+
     /// Checks every field; names the first bad one.
     pub(crate) fn validate(&self) -> Checked {
         let within = |limits, why| {

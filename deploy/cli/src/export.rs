@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use export::{Description, Network, Origin, network, onnx, tensors};
+use export::{Description, Network, Origin, metadata, network, onnx, tensors};
 use g1::mjcf;
 use judge::Kept;
 use sim::RandomizationConfig;
@@ -88,13 +88,18 @@ fn files(kept: &Kept, self_collision: SelfCollision) -> Result<Vec<(&'static str
     let clip = kept.learning.policy.observation_clip;
     let network = Network::new(shape, clip, flat)
         .with_context(|| format!("checking policy.bin of {place}"))?;
-    let mut origin = origin(kept, &network)?;
-    let iteration = origin.iteration.to_string();
-    let properties = [
-        ("run", origin.run.as_str()),
-        ("iteration", iteration.as_str()),
-        ("weights_sha256", origin.weights_sha256.as_str()),
-    ];
+    let rate = |step: f32| f64::from((1.0 / step).round());
+    let task = kept.task()?;
+    let mut description = Description::new(
+        &network,
+        &kept.tables.actor,
+        origin(kept, &network)?,
+        [rate(CONTROL_STEP), rate(PHYSICS_STEP)],
+        task.command.widest(),
+        serde_json::to_value(&task)?,
+        serde_json::to_value(RandomizationConfig::table_one())?,
+    );
+    let properties = metadata::properties(&description);
     let mut files = vec![
         (MODEL, model(self_collision).into_bytes()),
         ("policy.onnx", onnx::model(&network, &properties)),
@@ -103,19 +108,10 @@ fn files(kept: &Kept, self_collision: SelfCollision) -> Result<Vec<(&'static str
             tensors::file(&network).context("writing safetensors")?,
         ),
     ];
-    origin.files_sha256 = files
+    description.origin.files_sha256 = files
         .iter()
         .map(|(name, bytes)| ((*name).to_owned(), network::sha256(bytes)))
         .collect();
-    let rate = |step: f32| f64::from((1.0 / step).round());
-    let description = Description::new(
-        &network,
-        &kept.tables.actor,
-        origin,
-        [rate(CONTROL_STEP), rate(PHYSICS_STEP)],
-        serde_json::to_value(&kept.task()?)?,
-        serde_json::to_value(RandomizationConfig::table_one())?,
-    );
     let mut text = serde_json::to_vec_pretty(&description)?;
     text.push(b'\n');
     files.push(("policy.json", text));

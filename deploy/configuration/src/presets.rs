@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use run::config::{Source, lay};
-use run::{Config, ConfigError};
+use run::Config;
 use terminal::failure::usage;
 
 use crate::resolve;
@@ -84,12 +84,12 @@ pub fn find(given: &str) -> Result<Preset> {
 
 /// Lays a preset, and all that it lies on, over a configuration; what is to be said of it.
 pub fn lay_over(config: &mut Config, given: &str) -> Result<Vec<String>> {
-    Ok(lay_source(config, top(given)?)?)
+    lay_source(config, top(given)?)
 }
 
 /// The same, of a text.
-pub fn lay_source(config: &mut Config, source: Source) -> Result<Vec<String>, ConfigError> {
-    lay(config, source, open, resolve::default)
+pub fn lay_source(config: &mut Config, source: Source) -> Result<Vec<String>> {
+    Ok(lay(config, source, open, resolve::default)?)
 }
 
 /// What was typed: a name, a file, or what is written to us.

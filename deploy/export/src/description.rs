@@ -12,6 +12,7 @@ use serde_json::Value;
 
 use crate::network::Network;
 use crate::onnx;
+use crate::operation::{Commands, Operation};
 
 /// What `format` says.
 pub const FORMAT: &str = "ampco policy";
@@ -35,6 +36,8 @@ pub struct Description {
     pub joints: Vec<JointDescription>,
     /// The terms of an observation, in order and without gaps.
     pub observation: Vec<Term>,
+    /// What has to be known besides to run it.
+    pub operation: Operation,
     /// One observation and the action that belongs to it, to check an installation with.
     pub example: Example,
     /// The `[task]` section that it was trained under: when a robot has fallen, how rewards are computed.
@@ -109,6 +112,10 @@ pub struct JointDescription {
     pub velocity_limit: f64,
     /// kg·m².
     pub armature: f64,
+    /// Index of its motor in Unitree's `LowCmd` and `LowState` (`unitree_hg`), which count 29: waist roll and pitch (13, 14)
+    /// and wrists' pitch and yaw (20, 21, 27, 28) are not there, and are held at 0 on the larger robot.
+    #[serde(default)]
+    pub unitree_motor: u32,
 }
 
 /// A stretch of the observation: a quantity, cut to its clip and then multiplied by its scale, of the present first and
@@ -150,7 +157,7 @@ pub struct Example {
 }
 
 impl Description {
-    /// Of a network that sees what `seen` lists; `rates` are those of the policy and of physics, Hz.
+    /// Of a network that sees what `seen` lists and was told `commands`; `rates` are those of the policy and of physics, Hz.
     ///
     /// # Panics
     /// If the network sees another number of numbers.
@@ -159,6 +166,7 @@ impl Description {
         seen: &Table,
         origin: Origin,
         rates: [f64; 2],
+        commands: Commands,
         task: Value,
         randomization: Value,
     ) -> Self {
@@ -185,6 +193,7 @@ impl Description {
             },
             joints: joints(),
             observation: terms(seen),
+            operation: Operation::of(commands),
             example: example(network, seen),
             task,
             randomization,
@@ -192,10 +201,16 @@ impl Description {
     }
 }
 
+/// `G1JointIndex` of unitree_sdk2: left leg, right leg, waist yaw, left arm to the wrist's roll, right arm.
+const UNITREE_MOTORS: [u32; g1::JOINTS] = [
+    0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 15, 16, 17, 18, 19, 22, 23, 24, 25, 26,
+];
+
 fn joints() -> Vec<JointDescription> {
     JOINT_TABLE
         .iter()
-        .map(|joint| JointDescription {
+        .zip(UNITREE_MOTORS)
+        .map(|(joint, unitree_motor)| JointDescription {
             name: joint.name.to_owned(),
             default_position: joint.default_position,
             lower: joint.lower,
@@ -205,6 +220,7 @@ fn joints() -> Vec<JointDescription> {
             effort: joint.effort,
             velocity_limit: joint.velocity_limit,
             armature: joint.armature,
+            unitree_motor,
         })
         .collect()
 }

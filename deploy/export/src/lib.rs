@@ -6,6 +6,7 @@
 //! | file | what | module |
 //! | --- | --- | --- |
 //! | `policy.onnx` | observation in, deterministic action out; normalisation inside | [`onnx`] |
+//! | in it, as metadata | what a lone `policy.onnx` says of joints, gains, terms and rates | [`metadata`] |
 //! | `policy.safetensors` | the same weights under the names of a PyTorch `Sequential` | [`tensors`] |
 //! | `policy.json` | joints, gains, observation layout, rates, where it comes from | [`description`] |
 //!
@@ -13,8 +14,10 @@
 #![forbid(unsafe_code)]
 
 pub mod description;
+pub mod metadata;
 pub mod network;
 pub mod onnx;
+pub mod operation;
 pub mod tensors;
 
 pub use description::{Description, Origin};

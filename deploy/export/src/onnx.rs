@@ -27,7 +27,7 @@ pub const OPSET: i64 = 17;
 const IR_VERSION: i64 = 8;
 
 /// The model with `properties` (key, value) as its metadata.
-pub fn model(network: &Network, properties: &[(&str, &str)]) -> Vec<u8> {
+pub fn model(network: &Network, properties: &[(String, String)]) -> Vec<u8> {
     let model = ModelProto {
         ir_version: IR_VERSION,
         opset_import: vec![OperatorSetIdProto {
@@ -40,8 +40,8 @@ pub fn model(network: &Network, properties: &[(&str, &str)]) -> Vec<u8> {
         metadata_props: properties
             .iter()
             .map(|(key, value)| StringStringEntryProto {
-                key: (*key).to_owned(),
-                value: (*value).to_owned(),
+                key: key.clone(),
+                value: value.clone(),
             })
             .collect(),
     };
@@ -136,7 +136,7 @@ mod tests {
     fn the_graph_is_the_formula_in_order() {
         let shape = Shape::new(5, &[3]);
         let network = Network::new(shape.clone(), 2.5, vec![0.5; shape.len()]).unwrap();
-        let bytes = model(&network, &[("run", "walk")]);
+        let bytes = model(&network, &[("run".to_owned(), "walk".to_owned())]);
         let model = ModelProto::decode(bytes.as_slice()).unwrap();
         let graph = model.graph.unwrap();
         let operators: Vec<&str> = graph.node.iter().map(|n| n.op_type.as_str()).collect();

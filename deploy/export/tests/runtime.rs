@@ -41,7 +41,7 @@ fn another_runtime_gives_the_same_actions() {
         ours.load(&flat).unwrap();
         let model = onnx::model(
             &Network::new(shape, clip, flat).unwrap(),
-            &[("run", "test")],
+            &[("run".to_owned(), "test".to_owned())],
         );
         let theirs = Model::load(model).unwrap();
         // Batches of different sizes go through the same file; large numbers reach the clipping.

@@ -182,7 +182,7 @@ fn engine(fleet: &FleetConfig) -> String {
 
 /// Refuses an end that the run has passed: there would be nothing to do, and "complete" would pass for an answer.
 fn has_more_to_do(folder: &Folder, iteration: u64, config: &Config, run: &RunConfig) -> Result<()> {
-    let end = u64::from(run.iterations);
+    let end = run.iterations;
     if end == 0 || iteration < end {
         return Ok(());
     }

@@ -37,6 +37,7 @@ fn the_example_is_what_the_network_does() {
         &Tables::default().actor,
         Origin::default(),
         [50.0, 200.0],
+        [[0.4, 1.4], [0.0; 2], [0.0; 2]],
         Value::Null,
         Value::Null,
     );
@@ -47,6 +48,7 @@ fn the_example_is_what_the_network_does() {
     let back: Description = serde_json::from_str(&text).unwrap();
     assert_eq!(back, description);
     assert_eq!(back.joints[3].name, "left_knee_joint");
+    assert_eq!(back.joints[13].unitree_motor, 15); // waist roll and pitch are 13 and 14
 }
 
 #[test]
