@@ -4,8 +4,8 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use run::config::{Source, lay};
 use run::Config;
+use run::config::{Source, lay};
 use terminal::failure::usage;
 
 use crate::resolve;
