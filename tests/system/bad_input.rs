@@ -56,7 +56,7 @@ fn an_unknown_key_of_a_preset_file_names_the_file() {
 #[test]
 fn a_deviation_that_no_actor_could_draw_with_is_refused_before_anything_starts() {
     for key in ["sigma", "waist_factor"] {
-        let said = refused(&["--set", &format!("exploration.{key}=1e-45")]);
+        let said = refused(&["--set", &format!("exploration.{key}=1e-30")]);
         assert_says(&said, &["--set", key, "1e-6"]);
     }
 }

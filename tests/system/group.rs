@@ -179,7 +179,7 @@ fn children_end_with_a_killed_supervisor() {
             .then_some(())
     });
     // The next start finds the run as it was left and cleans up what the first could not.
-    let mut again = runs.resume("orphans", &["--iterations", "1"]);
+    let mut again = runs.resume("orphans", &["--iterations", "60"]);
     assert!(again.end().success(), "{}", again.stderr.text());
     assert_nothing_is_left(&runs, "orphans");
 }

@@ -34,14 +34,17 @@ pub struct CommandConfig {
     /// Time between new commands, s, drawn uniformly. Default 3 to 10, the span in use among
     /// published trainers.
     pub resample_seconds: [f32; 2],
-    /// Share of starts from reference motion whose command is that motion's own velocity. Motion that is out of the ranges
-    /// as they are at the time is not begun in, unless all of it is.
+    /// Share of starts from reference motion whose command is that motion's own velocity. Where ranges move, motion that they
+    /// do not ask for yet is not begun in, unless all of it is.
     /// Default 0.9, of the recipe that walked; 0.7 later in training.
     pub matched_share: Ramp<f32>,
     /// Robots that keep to one kind of command each, so that every kind gets its share of the samples.
     /// Default: none does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kinds: Option<KindsConfig>,
+    /// Where ranges moved before they were held: all that they ever ask for.
+    #[serde(skip)]
+    pub at_last: Option<[[f32; 2]; 3]>,
 }
 
 /// How far beyond a range motion may be that still passes for it: a gait's speed comes of its steps, to three digits or so.
@@ -68,6 +71,7 @@ impl Default for CommandConfig {
             resample_seconds: [3.0, 10.0],
             matched_share: 0.9.into(),
             kinds: None,
+            at_last: None,
         }
     }
 }
@@ -75,7 +79,11 @@ impl Default for CommandConfig {
 impl CommandConfig {
     /// Holds all that moves where it is after a number of samples.
     pub(crate) fn set(&mut self, samples: f64) {
+        let widest = self.widest();
         for range in [&mut self.forward, &mut self.lateral, &mut self.yaw_rate] {
+            if range.moves() {
+                self.at_last = Some(widest);
+            }
             range.set(samples);
         }
         self.standing_share.set(samples);
@@ -88,10 +96,11 @@ impl CommandConfig {
 
     /// All that is ever asked for: forward and leftward velocity (m/s), yaw rate (rad/s), least and greatest each.
     pub fn widest(&self) -> [[f32; 2]; 3] {
-        [self.forward, self.lateral, self.yaw_rate].map(|range| {
+        let moving = [self.forward, self.lateral, self.yaw_rate].map(|range| {
             let [from, to] = [range.at(0.0), range.at(f64::INFINITY)];
             [from[0].min(to[0]), from[1].max(to[1])]
-        })
+        });
+        self.at_last.unwrap_or(moving)
     }
 
     /// Checks every field; names the first bad one.
@@ -120,7 +129,7 @@ impl CommandConfig {
         self.matched_share.check("matched_share", invalid::share)?;
         self.kinds
             .as_ref()
-            .map_or(Ok(()), |kinds| kinds.validate(self.forward.now()))
+            .map_or(Ok(()), |kinds| kinds.validate(self.widest()))
     }
 
     /// A command: the one sampler, for resets and for changes inside an episode.
@@ -135,12 +144,17 @@ impl CommandConfig {
         }
     }
 
-    /// Whether motion of a command is within the ranges as they are now, so that robots can be told to go on with it.
-    pub(crate) fn asks_for(&self, command: [f32; 3]) -> bool {
-        let ranges = [self.forward, self.lateral, self.yaw_rate].map(|range| range.now());
-        let mut parts = ranges.iter().zip(command);
-        parts
-            .all(|([least, greatest], value)| (least - NEARLY..=greatest + NEARLY).contains(&value))
+    /// Whether motion of a command waits: ranges that move will ask for it, and do not yet. What they never ask for, as a
+    /// clip of standing beside commands to walk, is begun in at all times.
+    pub(crate) fn waits(&self, command: [f32; 3]) -> bool {
+        let within = |ranges: [[f32; 2]; 3]| {
+            let mut parts = ranges.iter().zip(command);
+            parts.all(|([least, greatest], value)| {
+                (least - NEARLY..=greatest + NEARLY).contains(&value)
+            })
+        };
+        let now = [self.forward, self.lateral, self.yaw_rate].map(|range| range.now());
+        self.at_last.is_some_and(within) && !within(now)
     }
 
     /// A command of one kind from the ranges.

@@ -9,6 +9,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vocabulary::{Checked, Ramp, invalid};
 
+/// Least and greatest of the three parts of commands.
+type Commands = [[f32; 2]; 3];
+
 /// What a command asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -79,9 +82,9 @@ impl KindsConfig {
         self.approach.set(samples);
     }
 
-    /// Checks every field, those that go ahead or back against the range of forward velocities, m/s; names the first
-    /// bad one and a remedy.
-    pub(crate) fn validate(&self, [slowest, fastest]: [f32; 2]) -> Checked {
+    /// Checks every field, the kinds against all that commands ever ask for: forward and leftward velocity, m/s, and yaw
+    /// rate, rad/s. Names the first bad one and a remedy.
+    pub(crate) fn validate(&self, [[slowest, fastest], lateral, yaw_rate]: Commands) -> Checked {
         let fields = [
             "kinds.standing",
             "kinds.forward",
@@ -119,6 +122,18 @@ impl KindsConfig {
             "kinds.backward",
             self.backward,
             "let command.forward begin below 0, or give 0",
+        )?;
+        invalid::require(
+            self.lateral == 0.0 || lateral != [0.0; 2],
+            "kinds.lateral",
+            self.lateral,
+            "give command.lateral a range, as in [-0.4, 0.4], or give 0",
+        )?;
+        invalid::require(
+            self.turning == 0.0 || yaw_rate != [0.0; 2],
+            "kinds.turning",
+            self.turning,
+            "give command.yaw_rate a range, as in [-1.0, 1.0], or give 0",
         )
     }
 

@@ -125,7 +125,7 @@ impl Starts {
     }
 }
 
-/// How often a frame is drawn until one is found whose command is asked for at the time; the last one is taken.
+/// How often a frame is drawn until one is found that does not wait for its command; the last one is taken.
 const TRIES: usize = 16;
 
 /// How an episode begins.
@@ -147,7 +147,7 @@ pub(crate) fn draw(
 ) -> Beginning {
     let from_motion = rng.random::<f32>() < start.reference_share.now();
     let frame = (0..TRIES).fold(None, |frame, _| match frame {
-        Some(frame) if commands.asks_for(starts.commands[frame]) => Some(frame),
+        Some(frame) if !commands.waits(starts.commands[frame]) => Some(frame),
         _ => match kind {
             Some((kind, pools)) => pools.draw(kind, rng),
             None => starts.draw(rng),

@@ -168,3 +168,19 @@ fn stepping_aside_and_turning_are_approached_from_walking_on() {
     assert!(ahead == 0.4 && aside == 0.0 && turn != 0.0);
     assert!(config.draw_of(Kind::Backward, &mut rng)[0] < 0.0);
 }
+
+#[test]
+fn kinds_are_held_against_all_that_ranges_ever_ask_for() {
+    let mut commands: CommandConfig = toml::from_str(
+        "forward = { from = [0.4, 1.0], to = [-0.6, 1.0], samples = [0.0, 2.0] }\n[kinds]\nbackward = 1.0",
+    )
+    .unwrap();
+    assert_eq!(commands.validate(), Ok(()));
+    // Held before the range has reached back, it is the same configuration.
+    commands.set(0.0);
+    assert_eq!(commands.validate(), Ok(()));
+    assert_eq!(commands.widest()[0], [-0.6, 1.0]);
+    let never: CommandConfig =
+        toml::from_str("forward = [0.4, 1.0]\n[kinds]\nbackward = 1.0").unwrap();
+    assert!(never.validate().is_err());
+}

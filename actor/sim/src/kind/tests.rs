@@ -25,9 +25,34 @@ fn kinds_without_a_range_are_refused() {
         backward: 1.0,
         ..KindsConfig::default()
     };
-    let error = backward.validate([0.4, 1.2]).unwrap_err().to_string();
+    let error = backward
+        .validate([[0.4, 1.2], [0.0; 2], [0.0; 2]])
+        .unwrap_err()
+        .to_string();
     assert!(error.contains("kinds.backward = 1"), "{error}");
-    assert_eq!(backward.validate([-0.5, 1.2]), Ok(()));
+    assert_eq!(backward.validate([[-0.5, 1.2], [0.0; 2], [0.0; 2]]), Ok(()));
     let nobody = KindsConfig::default();
-    assert!(nobody.validate([-0.5, 1.2]).is_err(), "nobody has a share");
+    assert!(
+        nobody.validate([[-0.5, 1.2], [0.0; 2], [0.0; 2]]).is_err(),
+        "nobody has a share"
+    );
+}
+
+#[test]
+fn robots_are_told_to_step_aside_or_turn_only_where_a_range_has_it() {
+    let straight = [[0.4, 1.2], [0.0; 2], [0.0; 2]];
+    let every = [[0.4, 1.2], [-0.3, 0.3], [-1.0, 0.0]];
+    let lateral = KindsConfig {
+        lateral: 1.0,
+        ..KindsConfig::default()
+    };
+    let turning = KindsConfig {
+        turning: 1.0,
+        ..KindsConfig::default()
+    };
+    for (kinds, part) in [(lateral, "kinds.lateral"), (turning, "kinds.turning")] {
+        let error = kinds.validate(straight).unwrap_err().to_string();
+        assert!(error.contains(part), "{error}");
+        assert_eq!(kinds.validate(every), Ok(()));
+    }
 }

@@ -34,7 +34,7 @@ pub struct PpoConfig {
     /// be led astray by a new one. Default 0; `ampco train --from` a shipped policy makes it a million.
     pub critic_first: f64,
     /// Weight of the symmetry loss: how far the actor, shown the mirror image of a row, is off the mirror image of what
-    /// it did there (see [`crate::surrogate::symmetry_loss`]). Unlike mirrored rows it takes no ratio to a density that
+    /// it did there. Unlike mirrored rows it takes no ratio to a density that
     /// no policy had, so it works when exploration is narrow. Default 0: off.
     pub symmetry_weight: f32,
     /// Share of each minibatch that it is taken over; the critic learns from those rows mirrored.
