@@ -5,6 +5,8 @@ Figures are means over all steps that robots were on their feet, the step of the
 
 import numpy as np
 
+from . import stress
+from .measure import Record, Step, outcome
 from .robot import Robot
 
 
@@ -59,22 +61,34 @@ class Randomization:
         return values + self.random.uniform(least - noise, greatest + noise, np.shape(values))
 
 
-def walk(model, policy, command, episodes, seconds, randomize, seed):
+def robot_of(model, policy, command, stresses=(), seed=0, index=0, variation=None):
+    """A robot that stands, is told `command`, and is stressed as the episode `index` of this seed."""
+    robot = Robot(model, policy, variation, own=bool(stresses), index=index)
+    robot.command = np.array(command, dtype=np.float64)
+    stress.apply(robot, stresses, seed)
+    return robot
+
+
+def walk(model, policy, command, episodes, seconds, randomize, seed, stresses=()):
     """The figures of `episodes` robots that follow `command` from standing, as a dict."""
     random = np.random.default_rng(seed)
     description = policy.description
     table = Randomization(description["randomization"] if randomize else None, random)
     hz = description["control"]["policy_hz"]
     steps = round(seconds * hz)
-    robots = [Robot(model, policy, table.variation()) for _ in range(episodes)]
+    robots = [
+        robot_of(model, policy, command, stresses, seed, index, table.variation()) for index in range(episodes)
+    ]
     for robot in robots:
         robot.perturb(description["task"]["start"], random)
-        robot.command = np.array(command, dtype=np.float64)
     push_in = [table.push_after(hz) for _ in robots]
+    records = [Record(hz) for _ in robots]
     lived = np.full(episodes, steps)
     standing = list(range(episodes))
-    count, squared, squared_yaw, energy, velocity, yaw_rate = 0, 0.0, 0.0, 0.0, np.zeros(2), 0.0
     for step in range(steps):
+        for i in standing:
+            for act in robots[i].each_step:
+                act()
         seen = [robots[i].observe(table.blur) for i in standing]
         actions = policy.actions(seen)
         for i, action in zip(list(standing), actions):
@@ -83,29 +97,43 @@ def walk(model, policy, command, episodes, seconds, randomize, seed):
             if push_in[i] == 0:
                 robot.push(table.push())
                 push_in[i] = table.push_after(hz)
-            energy += robot.step(action)
-            planar = robot.velocity_in_heading()
-            squared += ((robot.command[:2] - planar) ** 2).sum()
-            velocity += planar
-            turning = robot.yaw_rate()
-            squared_yaw += (robot.command[2] - turning) ** 2
-            yaw_rate += turning
-            count += 1
+            measured = measured_step(robot, action)
+            if measured is not None:
+                records[i].add(measured)
             if robot.has_fallen(description["task"]):
                 lived[i] = step + 1
                 standing.remove(i)
         if not standing:
             break
-    return figures(command, {
+    for record in records:
+        record.close()
+    total = Record(hz)
+    for record in records:
+        total.merge(record)
+    row = figures(command, {
         "episodes": episodes,
         "survival": len(standing) / episodes,
-        "rmse": float(np.sqrt(squared / count)),
-        "rmse_yaw_rate": float(np.sqrt(squared_yaw / count)),
-        "energy_j": energy / count * 1000,
-        "velocity": (velocity / count).tolist(),
-        "yaw_rate": yaw_rate / count,
         "seconds_survived": float(lived.mean() / hz),
+        **outcome(total, robots[0].weight(), [joint["name"] for joint in description["joints"]]),
     })
+    if any(robot.each_step for robot in robots):
+        # Of commands that change the first says nothing about the mean.
+        row["normalized_error"] = None
+    return row
+
+
+def measured_step(robot, action):
+    """Lets a robot act, and measures it; nothing of a state that is no number."""
+    change = np.abs(np.asarray(action, dtype=np.float64) - robot.previous_action).mean()
+    work = robot.step(action)
+    if not (np.isfinite(robot.data.qpos).all() and np.isfinite(robot.data.qvel).all()):
+        return None
+    heights, speeds = robot.feet.lowest(robot.data)
+    return Step(
+        command=robot.command, velocity=np.array([*robot.velocity_in_heading(), robot.yaw_rate()]), work=work,
+        forces=robot.feet.forces(robot.data), heights=heights, speeds=speeds, shoulders=robot.shoulders(),
+        lean=robot.lean(), saturated=robot.saturated, sole_peak=robot.sole_peak, action_change=change,
+    )
 
 
 def figures(command, row):
@@ -114,7 +142,7 @@ def figures(command, row):
     speed = np.linalg.norm(asked)
     row["command"] = [float(x) for x in command]
     row["energy_per_step_j"] = row["energy_j"] / 1000
-    # Deviation of the mean velocity from the command, as a share of the command (Section IV-C): of going, not of turning.
+    # Deviation of the mean velocity from the command, as a share of it (Section IV-C): of going, not of turning.
     row["normalized_error"] = (
         float(np.linalg.norm(np.array(row["velocity"]) - asked) / speed) if speed > 0 else None
     )

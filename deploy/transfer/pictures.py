@@ -1,21 +1,32 @@
-"""Figure 5 of both simulators, and a strip of images of the walking robot."""
+"""Figures: Figure 5 of both simulators, and what stresses do."""
 
 import os
-import sys
-
-import numpy as np
+from pathlib import Path
 
 COLOURS = ["#4878a8", "#3d8f6a", "#c9882c", "#b5483c", "#7a5aa0", "#5b6675"]
+FORMATS = (".png", ".svg", ".pdf")
 
 
-def figure(path, title, series):
-    """Energy per step over velocity (Fig. 5): `series` is (label, marker, rows); colours are commands."""
+def _pyplot():
     import matplotlib
 
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    fig, axes = pyplot.subplots(figsize=(7, 4.5), layout="constrained")
+    return pyplot
+
+
+def _save(fig, path):
+    # Written beside and renamed, so that a reader never meets half a file.
+    draft = f"{path}.{os.getpid()}.new"
+    fig.savefig(draft, dpi=130, format=Path(path).suffix[1:].lower())
+    os.replace(draft, path)
+    _pyplot().close(fig)
+
+
+def figure(path, title, series):
+    """Energy per step over velocity (Fig. 5): `series` is (label, marker, rows); colours are commands."""
+    fig, axes = _pyplot().subplots(figsize=(7, 4.5), layout="constrained")
     commands = [row["command"] for row in series[0][2]]
     for i, command in enumerate(commands):
         axes.axvline(command[0], color=COLOURS[i % len(COLOURS)], linestyle="--", linewidth=0.8)
@@ -33,50 +44,37 @@ def figure(path, title, series):
     axes.set_title(f"{title}\nhollow: every robot fell before the end", fontsize=10)
     axes.set_ylim(0, 1.15 * max(row["energy_per_step_j"] for _, _, rows in series for row in rows))
     axes.legend()
-    fig.savefig(path, dpi=130)
-    pyplot.close(fig)
+    _save(fig, path)
 
 
-def prepare_rendering():
-    """Chooses how MuJoCo draws, before it is imported: without a display by EGL, in software if need be."""
-    if "MUJOCO_GL" not in os.environ and sys.platform == "linux" and "DISPLAY" not in os.environ:
-        os.environ["MUJOCO_GL"] = "egl"
+# Of `stress_figure`: a figure's name in a row, what it is, and how much of it is one unit of the axis.
+BARS = [
+    ("survival", "survival, %", 100), ("rmse", "error of velocity, m/s", 1),
+    ("cost_of_transport", "cost of transport", 1),
+]
 
 
-# A pelvis below this height lies on the floor, m: nothing more is to be seen.
-LYING = 0.3
-
-
-def strip(path, robot, policy, seconds, images):
-    """Images at equal times of an episode, side by side, as PNG. Gives when the robot had fallen, s, or nothing."""
-    import matplotlib.image
-    import mujoco
-
-    hz = policy.description["control"]["policy_hz"]
-    poses, fell_at = [], None
-    for step in range(round(seconds * hz) + 1):
-        poses.append(robot.data.qpos.copy())
-        if fell_at is None and robot.has_fallen(policy.description["task"]):
-            fell_at = step / hz
-        if not robot.data.qpos[2] > LYING:
-            break
-        robot.step(policy.actions([robot.observe()])[0])
-    try:
-        renderer = mujoco.Renderer(robot.model, height=400, width=270)
-    except Exception as problem:
-        raise SystemExit(
-            f"sim2sim: MuJoCo cannot draw here ({problem}): install libegl1 and libgl1-mesa-dri, "
-            "or libosmesa6 and set MUJOCO_GL=osmesa"
-        ) from problem
-    camera = mujoco.MjvCamera()
-    camera.distance, camera.azimuth, camera.elevation = 2.3, 115, -8
-    frames = []
-    for moment in np.linspace(0, len(poses) - 1, images).round().astype(int):
-        robot.data.qpos[:] = poses[moment]
-        mujoco.mj_forward(robot.model, robot.data)
-        camera.lookat[:] = [*poses[moment][:2], 0.62]
-        renderer.update_scene(robot.data, camera=camera)
-        frames.append(renderer.render())
-    renderer.close()
-    matplotlib.image.imsave(path, np.concatenate(frames, axis=1))
-    return fell_at
+def stress_figure(path, title, rows):
+    """Bars of survival, error and cost by stress, a colour for each command; of what is not measured no bar."""
+    labels = list(dict.fromkeys(row["stress"] for row in rows))
+    commands = list(dict.fromkeys(tuple(row["command"]) for row in rows))
+    thick = 0.8 / len(commands)
+    height = 1.2 + 0.32 * len(labels) * max(1, len(commands) / 2)
+    fig, all_axes = _pyplot().subplots(1, len(BARS), figsize=(11, height), sharey=True, layout="constrained")
+    for axes, (name, words, unit) in zip(all_axes, BARS, strict=True):
+        for i, command in enumerate(commands):
+            own = {row["stress"]: row[name] for row in rows if tuple(row["command"]) == command}
+            axes.barh(
+                [at + (i - (len(commands) - 1) / 2) * thick for at in range(len(labels))],
+                [unit * (own[label] or 0.0) for label in labels], height=0.9 * thick, color=COLOURS[i % len(COLOURS)],
+                label=", ".join(f"{part:g}" for part in command),
+            )
+        axes.set_xlabel(words)
+    all_axes[0].set_yticks(range(len(labels)), labels)
+    all_axes[0].invert_yaxis()
+    handles, words = all_axes[0].get_legend_handles_labels()
+    fig.legend(
+        handles, words, title="asked, m/s, m/s, rad/s", fontsize=8, title_fontsize=8, ncols=4, loc="outside lower center"
+    )
+    fig.suptitle(title, fontsize=10)
+    _save(fig, path)

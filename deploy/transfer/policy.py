@@ -7,14 +7,12 @@ from pathlib import Path
 import numpy as np
 import onnxruntime
 
+from .error import ExportError
+
 VERSION = 3
 
 # Names of terms in descriptions before version 3.
 OLDER_NAMES = {"pelvis_height": "height", "projected_gravity": "gravity"}
-
-
-class ExportError(Exception):
-    """An export that cannot be used; the message names the file and the remedy."""
 
 
 class Policy:
@@ -72,3 +70,8 @@ class Policy:
         """Run and iteration."""
         origin = self.description["origin"]
         return f"{origin['run']}, iteration {origin['iteration']}"
+
+    def taught(self, part):
+        """Least and greatest of a part of the commands in training: `forward`, `lateral`, `yaw_rate`."""
+        found = self.description["task"].get("command", {}).get(part)
+        return tuple(found) if isinstance(found, list) and len(found) == 2 else (0.0, 0.0)

@@ -15,7 +15,8 @@ import numpy as np
 
 from . import reference
 from .episodes import figures, walk
-from .policy import ExportError, Policy
+from .error import ExportError
+from .policy import Policy
 from .robot import FREE, Robot
 
 EXPORT = Path(os.environ.get("AMPCO_EXPORT", "policy"))

@@ -31,9 +31,11 @@ fn what_is_exported_walks_in_mujoco_by_the_tests_of_the_transfer() {
         .args([
             "-m",
             "unittest",
-            "transfer.test_transfer",
-            "transfer.test_table",
-            "transfer.test_alone",
+            "discover",
+            "--start-directory",
+            "transfer",
+            "--top-level-directory",
+            ".",
         ])
         .current_dir(repository().join("deploy"))
         .env("PYTHONDONTWRITEBYTECODE", "1")
