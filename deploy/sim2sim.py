@@ -91,6 +91,8 @@ def main():
         judge(given)
     except ExportError as problem:
         sys.exit(f"sim2sim: {problem}")
+    except OSError as problem:
+        sys.exit(f"sim2sim: {problem.filename}: {problem.strerror}: give a file that can be written")
     except KeyboardInterrupt:
         sys.exit(130)
 
@@ -115,7 +117,10 @@ def judge(given):
         print(note, flush=True)
 
     def first():
-        return robot_of(model, policy, given.commands[0])
+        """As the last row of stresses is, if there are any."""
+        stresses = given.stress[-1][1] if given.stress else []
+        own, _ = load(path, policy, height_of_bumps(stresses))
+        return robot_of(own, policy, given.commands[0], stresses, given.seed)
 
     if given.view:
         view(policy, first())

@@ -9,6 +9,7 @@ BOX = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1
 AROUND = np.linspace(0, 2 * np.pi, 16, endpoint=False)
 RING = np.stack([np.cos(AROUND), np.sin(AROUND), np.zeros(16)], axis=1)
 
+ANKLES = ("left_ankle_roll_joint", "right_ankle_roll_joint")
 LEVEL = 0.9999  # Cosine of a floor's tilt.
 ABOVE = 100.0  # m
 

@@ -35,6 +35,8 @@ def walked(robot, policy, seconds):
             fell_at = step / hz
         if not robot.height() > LYING:
             break
+        for act in robot.each_step:
+            act()
         robot.step(policy.actions([robot.observe()])[0])
     return poses, np.array(forces), fell_at
 

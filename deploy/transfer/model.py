@@ -10,6 +10,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
+from .check import check
 from .error import ExportError
 from .stress import BUMPS, BUMPS_GRID
 
@@ -28,26 +29,36 @@ def load(path, policy, bumps=0.0):
     try:
         spec = mujoco.MjSpec.from_file(str(path))
     except Exception as problem:
-        raise ExportError(f"{path} cannot be read as MJCF ({problem}): mend the file") from None
+        raise ExportError(f"{path} cannot be read as MJCF ({_line(problem)}): mend the file") from None
     mujoco.set_mju_user_warning(_tell)
     notes = []
     joints = _joints(spec, path, policy, notes)
     root = _root(joints[0], path)
-    _hold_others(spec, root, joints, notes)
-    _motors(spec, joints, policy, notes)
-    _surroundings(spec, notes)
-    if bumps > 0:
-        _lay_bumps(spec, path, bumps)
+    names = [joint.name for joint in joints]
+    if bumps > 0 and not _has_plane(spec) and _has_floor(spec):
+        raise ExportError(f"{path}: bumps lie on a plane, and its floor is none: put a geom of type=\"plane\" into it")
     # A state that is no number has to be seen, and not to begin anew.
     spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     try:
+        _hold_others(spec, root, joints, notes)
+        _motors(spec, joints, policy, notes)
+        _surroundings(spec, notes)
+        if bumps > 0:
+            _lay_bumps(spec, bumps)
         model = spec.compile()
     except Exception as problem:
         raise ExportError(
-            f"{path} does not compile with the policy's motors ({problem}): take out what names a removed part"
+            f"{path} does not compile with the policy's motors ({_line(problem)}): take out what names a removed part"
         ) from None
-    _check_timestep(model, path, policy)
+    try:
+        check(model, policy, names, notes)
+    except ExportError as problem:
+        raise ExportError(f"{path}: {problem}") from None
     return model, [f"{path}: {note}" for note in notes]
+
+
+def _line(problem):
+    return " ".join(str(problem).split())
 
 
 _told = set()
@@ -138,27 +149,34 @@ def _still(body):
     return [*body.geoms, *(geom for child in rigid for geom in _still(child))]
 
 
+def _has_floor(spec):
+    """Whether something that never moves can be met."""
+    paired = {name for pair in spec.pairs for name in (pair.geomname1, pair.geomname2)}
+    return any(geom.contype or geom.conaffinity or geom.name in paired for geom in _still(spec.worldbody))
+
+
+def _has_plane(spec):
+    return any(geom.type == mujoco.mjtGeom.mjGEOM_PLANE for geom in spec.worldbody.geoms)
+
+
 def _surroundings(spec, notes):
     """A floor and a light, if there is none."""
-    if not any(geom.contype or geom.conaffinity for geom in _still(spec.worldbody)):
+    if not _has_floor(spec):
         notes.append("there is no floor: a plane at z = 0 is added")
         spec.worldbody.add_geom(
-            name="added_floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 0.1], contype=1, conaffinity=1,
-            rgba=[0.8, 0.82, 0.85, 1],
+            type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 0.1], contype=1, conaffinity=1, rgba=[0.8, 0.82, 0.85, 1]
         )
     if len(spec.lights) == 0:
         notes.append("there is no light: one is added")
-        spec.worldbody.add_light(name="added_light", pos=[0, 0, 4], dir=[0.2, 0.3, -1])
+        spec.worldbody.add_light(pos=[0, 0, 4], dir=[0.2, 0.3, -1])
     # Room for pictures.
     spec.visual.global_.offwidth = max(spec.visual.global_.offwidth, 640)
     spec.visual.global_.offheight = max(spec.visual.global_.offheight, 480)
 
 
-def _lay_bumps(spec, path, height):
+def _lay_bumps(spec, height):
     """A height field upon the floor; what meets the floor by a pair meets it too."""
     floors = [geom for geom in spec.worldbody.geoms if geom.type == mujoco.mjtGeom.mjGEOM_PLANE]
-    if not floors:
-        raise ExportError(f"{path}: bumps lie on a plane, and its floor is none: put a geom of type=\"plane\" into it")
     floor = max(floors, key=lambda geom: geom.pos[2])
     points = round(2 * BUMPS_REACH / BUMPS_GRID) + 1
     field = spec.add_hfield(name=BUMPS, nrow=points, ncol=points, size=[BUMPS_REACH, BUMPS_REACH, height, 0.1])
@@ -180,12 +198,3 @@ def _lay_bumps(spec, path, height):
                 solref=pair.solref, solimp=pair.solimp, margin=pair.margin, gap=pair.gap,
             )
 
-
-def _check_timestep(model, path, policy):
-    period = 1 / policy.description["control"]["policy_hz"]
-    steps = period / model.opt.timestep
-    if round(steps) < 1 or abs(steps - round(steps)) > 1e-6:
-        raise ExportError(
-            f"{path}: its timestep of {model.opt.timestep:g} s does not divide the policy's period of {period:g} s: "
-            'set <option timestep="0.002"/>'
-        )

@@ -2,6 +2,7 @@
 
 import argparse
 import math
+import os
 from pathlib import Path
 
 from . import rows
@@ -61,6 +62,8 @@ def file(*endings):
             raise argparse.ArgumentTypeError(f"{text!r}: give a name that ends in {' or '.join(endings)}")
         if not path.parent.is_dir():
             raise argparse.ArgumentTypeError(f"{text!r}: folder {path.parent} is not there: make it")
+        if not os.access(path.parent, os.W_OK):
+            raise argparse.ArgumentTypeError(f"{text!r}: nothing can be written in {path.parent}: give another folder")
         if path.is_dir():
             raise argparse.ArgumentTypeError(f"{text!r} is a folder: give a file")
         return text
@@ -90,11 +93,11 @@ def parser(about):
     add("--ampco", default="target/release/ampco", help="the program (default: target/release/ampco)")
     add("--json", metavar="FILE", type=file(), help="write all figures")
     add("--figure", metavar="FILE", type=file(*FORMATS), help="draw Figure 5, or what stresses do, as PNG, SVG or PDF")
-    add("--strip", metavar="FILE", type=file(".png"), help="draw ten images of a stride at the first command, as PNG")
+    add("--strip", metavar="FILE", type=file(".png"), help="draw ten images of a stride at the first command and under the last stress, as PNG")
     add("--video", metavar="FILE", type=file(".mp4", ".gif"),
-        help="film an episode at the first command, 20 s at most; .mp4 needs ffmpeg, without it a .gif is written")
+        help="film an episode of the same, 20 s at most; .mp4 needs ffmpeg, without it a .gif is written")
     add("--view", action="store_true",
-        help="open MuJoCo's window at the first command, the command on the keyboard (arrows, Q, E, space); no figures")
+        help="open MuJoCo's window on the same, the command on the keyboard (arrows, Q, E, space); no figures")
     return made
 
 

@@ -66,7 +66,7 @@ def stress_figure(path, title, rows):
             own = {row["stress"]: row[name] for row in rows if tuple(row["command"]) == command}
             axes.barh(
                 [at + (i - (len(commands) - 1) / 2) * thick for at in range(len(labels))],
-                [unit * (own[label] or 0.0) for label in labels], height=0.9 * thick, color=COLOURS[i % len(COLOURS)],
+                [unit * (own.get(label) or 0.0) for label in labels], height=0.9 * thick, color=COLOURS[i % len(COLOURS)],
                 label=", ".join(f"{part:g}" for part in command),
             )
         axes.set_xlabel(words)

@@ -14,6 +14,9 @@ VERSION = 3
 # Names of terms in descriptions before version 3.
 OLDER_NAMES = {"pelvis_height": "height", "projected_gravity": "gravity"}
 
+# What policy.json has to say.
+PARTS = ("origin", "network", "control", "joints", "observation", "task", "example")
+
 
 class Policy:
     """Actions of observations, a row each, and everything in policy.json as `description`."""
@@ -27,10 +30,18 @@ class Policy:
             raise ExportError(f"{path} is not there: write it with `ampco export RUN --out {folder}`") from None
         except ValueError as problem:
             raise ExportError(f"{path} is no JSON ({problem}): export the run again") from None
+        if not isinstance(self.description, dict):
+            self.description = {}
         if self.description.get("format") != "ampco policy" or self.description.get("version", 0) > VERSION:
             raise ExportError(f"{path} is of another format or a newer version: use the script that came with it")
+        missing = [part for part in PARTS if part not in self.description]
+        if missing:
+            raise ExportError(f"{path} lacks {', '.join(missing)}: export the run again")
         for name, expected in self.description["origin"]["files_sha256"].items():
-            found = hashlib.sha256((self.folder / name).read_bytes()).hexdigest()
+            try:
+                found = hashlib.sha256((self.folder / name).read_bytes()).hexdigest()
+            except OSError as problem:
+                raise ExportError(f"{self.folder / name}: {problem.strerror}: export the run again") from None
             if found != expected:
                 raise ExportError(f"{self.folder / name} is not the file that was exported: export the run again")
         options = onnxruntime.SessionOptions()

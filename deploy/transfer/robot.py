@@ -10,12 +10,11 @@ import mujoco
 import numpy as np
 
 from .error import ExportError
-from .feet import Feet
+from .feet import ANKLES, Feet
 from .model import find
 
 FREE = 7  # qpos of the floating base: position, quaternion w x y z
 SATURATED = 0.999  # From this share of its effort on a motor gives all it has.
-FEET = ("left_ankle_roll_joint", "right_ankle_roll_joint")
 SHOULDERS = ("left_shoulder_pitch_joint", "right_shoulder_pitch_joint")
 WAIST = "waist_yaw_joint"
 
@@ -62,7 +61,7 @@ class Robot:
         self.pelvis = self.model.body_rootid[self.torso]
         root = self.model.body_jntadr[self.pelvis]
         self.base, self.base_v = self.model.jnt_qposadr[root], self.model.jnt_dofadr[root]
-        self.feet = Feet(self.model, self.data, [at[name] for name in FEET])
+        self.feet = Feet(self.model, self.data, [at[name] for name in ANKLES])
         limited = self.model.jnt_actfrclimited[ids].astype(bool)
         self.effort = np.where(limited, np.minimum(self.effort, self.model.jnt_actfrcrange[ids, 1]), self.effort)
         # How these integrate, damping acts at the end of a step.

@@ -11,7 +11,7 @@ from typing import Callable
 import numpy as np
 
 # The height field in the model, and the distance of its points, m.
-BUMPS, BUMPS_GRID = "bumps", 0.2
+BUMPS, BUMPS_GRID = "stress of bumps", 0.2
 PUSH_SECONDS = 0.05
 PUSH_EVERY = (3.0, 5.0)
 # Around the start the floor is level, m.

@@ -12,10 +12,12 @@ from xml.etree import ElementTree
 import mujoco
 import numpy as np
 
+from .episodes import robot_of
 from .error import ExportError
 from .model import load
 from .policy import Policy
 from .robot import Robot
+from .stress import BUMPS
 
 EXPORT = Path(os.environ.get("AMPCO_EXPORT", "policy"))
 OWN = (EXPORT / "g1.xml").read_text() if (EXPORT / "g1.xml").is_file() else ""
@@ -156,8 +158,35 @@ class Models(unittest.TestCase):
         with self.assertRaisesRegex(ExportError, "nowhere.xml is not a file.*export --mjcf"):
             load("nowhere.xml", self.policy)
         barefoot = OWN.replace('contype="0" conaffinity="1"', 'contype="0" conaffinity="0"')
-        with self.assertRaisesRegex(ExportError, "left_ankle_roll_link meets the floor: give it a geom"):
-            Robot(self.loaded(barefoot)[0], self.policy)
+        self.refused(barefoot, "left_ankle_roll_link meets the floor: give it a geom")
+        tilted = OWN.replace('geom name="floor"', 'geom name="floor" euler="0 0.0872665 0"')
+        self.refused(tilted, r"tilted by 5.0°: level it, and ask for --stress slope=5.0")
+        # 2.8798°
+        degrees = OWN.replace('angle="radian"', 'angle="degree"')
+        self.refused(degrees, "joint left_hip_pitch_joint goes from -0.04417 to 0.05026 rad .* stands at -0.1 rad")
+        stump = '<equality><joint joint1="waist_roll_joint"/></equality><keyframe>'
+        more = OWN.replace("<keyframe>", stump).replace(
+            '<joint name="waist_yaw_joint"', '<joint name="waist_roll_joint" axis="1 0 0"/><joint name="waist_yaw_joint"'
+        )
+        self.refused(more, "does not compile with .*waist_roll_joint.*take out")
+
+    def test_a_floor_may_be_met_by_pairs_and_bumps_and_friction_with_it(self):
+        text = re.sub(r'(<geom name="floor"[^>]*)contype="1"', r'\1contype="0"', OWN)
+        text = text.replace('contype="0" conaffinity="1"', 'contype="0" conaffinity="0"')
+        soles = ("left_ankle_roll_link_sole", "right_ankle_roll_link_sole")
+        pairs = "".join(f'<pair geom1="{sole}" geom2="floor" condim="3"/>' for sole in soles)
+        model, notes = self.loaded(text.replace("<contact>", "<contact>" + pairs), bumps=0.02)
+        self.assertFalse(any("no floor" in note for note in notes))
+        robot = robot_of(model, self.policy, [0, 0, 0], [("bumps", 2.0), ("friction", 0.25)])
+        robot.position[0] = 2.0
+        robot.step(np.zeros(23))
+        met = {robot.model.geom(geom).name for geom in robot.data.contact.geom.flat}
+        self.assertIn(BUMPS, met)
+        self.assertEqual(robot.data.contact.friction[:, 0].tolist(), [0.25] * robot.data.ncon)
+
+    def test_what_is_odd_is_said(self):
+        _, notes = self.loaded(OWN.replace('<joint name="left_knee_joint"', '<joint name="left_knee_joint" ref="0.2"'))
+        self.assertTrue(any("left_knee_joint has ref 0.2 rad" in note for note in notes))
 
     def test_a_state_that_is_no_number_has_fallen_and_does_not_begin_anew(self):
         robot = Robot(self.loaded(OWN)[0], self.policy)

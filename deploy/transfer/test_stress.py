@@ -13,7 +13,7 @@ from .episodes import robot_of, walk
 from .model import load
 from .policy import Policy
 from .rows import StressError, explained, rows
-from .stress import STRESSES
+from .stress import BUMPS, STRESSES
 
 EXPORT = Path(os.environ.get("AMPCO_EXPORT", "policy"))
 MASS = 32.10685728
@@ -131,7 +131,7 @@ class Stresses(unittest.TestCase):
     def test_bumps_rise_from_the_floor_up_to_their_height_around_a_level_start(self):
         model = self.at_2_ms(0.02)
         robot, other, again = (self.robot(("bumps", 2), model=model, index=i) for i in (0, 1, 0))
-        heights = robot.model.hfield("bumps").data * robot.model.hfield("bumps").size[2]
+        heights = robot.model.hfield(BUMPS).data * robot.model.hfield(BUMPS).size[2]
         self.assertEqual(heights.shape, (501, 501))  # 100 m at every 20 cm
         self.assertTrue(0.0199 < heights.max() <= 0.02 and heights.min() == 0.0)
         self.assertAlmostEqual(heights.mean(), 0.01, delta=1e-4)
@@ -143,7 +143,7 @@ class Stresses(unittest.TestCase):
         robot.position[:2] = 2.0, 0.0
         robot.step(np.zeros(23))
         met = {robot.model.geom(geom).name for geom in robot.data.contact.geom.flat}
-        self.assertIn("bumps", met)
+        self.assertIn(BUMPS, met)
 
     def test_a_push_is_its_force_for_50_ms_every_three_to_five_seconds(self):
         robot = self.robot(("push", 250), model=self.at_2_ms())
