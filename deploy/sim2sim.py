@@ -131,6 +131,9 @@ def judge(given):
     result = {"origin": policy.description["origin"], "mujoco_version": mujoco.__version__, "model": str(path),
               "episodes": given.episodes, "seconds": given.seconds, "seed": given.seed}
     if given.stress:
+        seen = [term["name"] for term in policy.terms()]
+        for remark in rows.remarks(given.stress, seen, model.opt.timestep, given.seconds):
+            print(remark, flush=True)
         found = stressed(given, policy, path, result)
     else:
         series = compared(given, policy, model, result)

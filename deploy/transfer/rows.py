@@ -2,7 +2,7 @@
 
 import re
 
-from .stress import STRESSES
+from .stress import PUSH_EVERY, STRESSES
 
 NONE, ALL, HALF, STANDARD = "none", "all", "half", "standard"
 
@@ -60,6 +60,23 @@ def _one(word, part):
 
 def _label(stresses):
     return "+".join(f"{name}={value:g}" for name, value in stresses)
+
+
+def remarks(chosen, terms, timestep, seconds):
+    """What of rows comes to something else than it says: `terms` are names that the policy sees; times in s."""
+    values = {name: {value for _, row in chosen for stress, value in row if stress == name} for name in STRESSES}
+    said = []
+    for value in sorted(values["delay"]):
+        steps = round(value / 1000 / timestep)
+        if abs(value / 1000 / timestep - steps) > 1e-6:
+            said.append(f"delay={value:g}: {steps} physics steps of {1000 * timestep:g} ms, {1000 * steps * timestep:g} ms")
+    if values["push"] and seconds < PUSH_EVERY[1]:
+        said.append(f"push: the first comes after {PUSH_EVERY[0]:g} to {PUSH_EVERY[1]:g} s, episodes last {seconds:g} s")
+    if any(value >= seconds for value in values["commands"]):
+        said.append(f"commands: the first change comes when episodes of {seconds:g} s are over")
+    if values["velocity"] and not {"linear_velocity", "height"} & set(terms):
+        said.append("velocity: the policy sees neither velocity nor height of the pelvis, so it changes nothing")
+    return said
 
 
 def explained():

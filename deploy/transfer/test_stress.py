@@ -12,7 +12,7 @@ import numpy as np
 from .episodes import robot_of, walk
 from .model import load
 from .policy import Policy
-from .rows import StressError, explained, rows
+from .rows import StressError, explained, remarks, rows
 from .stress import BUMPS, STRESSES
 
 EXPORT = Path(os.environ.get("AMPCO_EXPORT", "policy"))
@@ -49,6 +49,17 @@ class Rows(unittest.TestCase):
         ):
             with self.assertRaisesRegex(StressError, words, msg=text):
                 rows(text)
+
+    def test_what_comes_to_something_else_than_it_says_is_said(self):
+        def said(text, terms=("height",), seconds=20.0):
+            return remarks(rows(text), terms, 0.005, seconds)
+
+        self.assertEqual(said("delay=20,push,commands,velocity"), [])
+        # 7.5 ms are one and a half steps of 5 ms.
+        self.assertEqual(said("delay=7.5"), ["delay=7.5: 2 physics steps of 5 ms, 10 ms"])
+        self.assertIn("after 3 to 5 s", said("push", seconds=4.0)[0])
+        self.assertIn("over", said("commands=4", seconds=4.0)[0])
+        self.assertIn("changes nothing", said("velocity", terms=["gravity"])[0])
 
     def test_help_names_every_stress_with_its_default(self):
         for name, stress in STRESSES.items():
