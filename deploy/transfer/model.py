@@ -23,6 +23,8 @@ NAMED = 3
 
 def load(path, policy, bumps=0.0):
     """The model, and what was changed in it as sentences. With a height field of `bumps` m, flat yet."""
+    if not hasattr(mujoco.MjSpec, "delete"):
+        raise ExportError(f"MuJoCo {mujoco.__version__} is too old: pip install -r deploy/transfer/requirements.txt")
     path = Path(path)
     if not path.is_file():
         raise ExportError(f"{path} is not a file: give the MJCF of the robot (`ampco export --mjcf` writes one)")
