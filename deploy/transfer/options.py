@@ -93,7 +93,8 @@ def parser(about):
     add("--ampco", default="target/release/ampco", help="the program (default: target/release/ampco)")
     add("--json", metavar="FILE", type=file(), help="write all figures")
     add("--figure", metavar="FILE", type=file(*FORMATS), help="draw Figure 5, or what stresses do, as PNG, SVG or PDF")
-    add("--strip", metavar="FILE", type=file(".png"), help="draw ten images of a stride at the first command and under the last stress, as PNG")
+    add("--strip", metavar="FILE", type=file(".png"),
+        help="draw ten images of a stride at the first command and under the last stress, as PNG")
     add("--video", metavar="FILE", type=file(".mp4", ".gif"),
         help="film an episode of the same, 20 s at most; .mp4 needs ffmpeg, without it a .gif is written")
     add("--view", action="store_true",

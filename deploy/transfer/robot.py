@@ -57,7 +57,10 @@ class Robot:
         ids = np.array([names.index(find(names, name)) for name in wanted])
         self.q, self.v = self.model.jnt_qposadr[ids], self.model.jnt_dofadr[ids]
         at = dict(zip(wanted, self.model.jnt_bodyid[ids], strict=True))
-        self.torso, self.arms = at[WAIST], [wanted.index(name) for name in SHOULDERS]
+        # Some models have a link of little weight between the waist and the torso, rigid or made so.
+        rigid = np.flatnonzero(self.model.body_weldid == self.model.body_weldid[at[WAIST]])
+        self.torso = rigid[self.model.body_mass[rigid].argmax()]
+        self.arms = [wanted.index(name) for name in SHOULDERS]
         self.pelvis = self.model.body_rootid[self.torso]
         root = self.model.body_jntadr[self.pelvis]
         self.base, self.base_v = self.model.jnt_qposadr[root], self.model.jnt_dofadr[root]

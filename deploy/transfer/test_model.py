@@ -97,7 +97,8 @@ class Models(unittest.TestCase):
             for child in own:
                 body.remove(child)
             body.extend(reversed(own))
-        ball = '<body pos="3 0 1"><freejoint/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/><geom size=".1"/></body>'
+        inertia = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
+        ball = f'<body pos="3 0 1"><freejoint/>{inertia}<geom size="0.1"/></body>'
         tree.find("worldbody").insert(0, ElementTree.fromstring(ball))
         other = ElementTree.tostring(tree, "unicode")
         robot, plain = (Robot(self.loaded(text)[0], self.policy) for text in (other, OWN))
@@ -146,6 +147,22 @@ class Models(unittest.TestCase):
         self.assertEqual(model.njnt, 24)
         self.assertTrue(any("rigid: waist_roll_joint" in note for note in notes))
 
+    def test_the_torso_is_what_is_heaviest_above_the_waist(self):
+        # As in models of 29 joints: a light link, and the torso on joints that the policy does not drive.
+        tree = ElementTree.fromstring(OWN)
+        pelvis = tree.find("worldbody/body")
+        torso = next(body for body in pelvis.findall("body") if body.get("name") == "torso_link")
+        link = ElementTree.SubElement(pelvis, "body", {"name": "waist_link", "pos": torso.get("pos")})
+        link.append(torso.find("joint"))
+        ElementTree.SubElement(link, "inertial", {"pos": "0 0 0", "mass": "0.2", "diaginertia": "0.1 0.1 0.1"})
+        pelvis.remove(torso)
+        link.append(torso)
+        torso.remove(torso.find("joint"))
+        torso.insert(0, ElementTree.fromstring('<joint name="waist_roll_joint" axis="1 0 0"/>'))
+        torso.set("pos", "0 0 0")
+        robot = Robot(self.loaded(ElementTree.tostring(tree, "unicode"))[0], self.policy)
+        self.assertEqual(robot.model.body(robot.torso).name, "torso_link")
+
     def test_what_cannot_be_driven_is_refused_with_file_joint_and_remedy(self):
         self.refused(OWN.replace("left_knee_joint", "left_knie"), "no joint left_knee_joint .*name the joints")
         self.refused(OWN.replace("_joint\"", "_j\""), "left_hip_pitch_joint.* and 20 more")
@@ -165,9 +182,9 @@ class Models(unittest.TestCase):
         degrees = OWN.replace('angle="radian"', 'angle="degree"')
         self.refused(degrees, "joint left_hip_pitch_joint goes from -0.04417 to 0.05026 rad .* stands at -0.1 rad")
         stump = '<equality><joint joint1="waist_roll_joint"/></equality><keyframe>'
-        more = OWN.replace("<keyframe>", stump).replace(
-            '<joint name="waist_yaw_joint"', '<joint name="waist_roll_joint" axis="1 0 0"/><joint name="waist_yaw_joint"'
-        )
+        waist = '<joint name="waist_yaw_joint"'
+        more = OWN.replace("<keyframe>", stump)
+        more = more.replace(waist, '<joint name="waist_roll_joint" axis="1 0 0"/>' + waist)
         self.refused(more, "does not compile with .*waist_roll_joint.*take out")
 
     def test_a_floor_may_be_met_by_pairs_and_bumps_and_friction_with_it(self):

@@ -62,7 +62,8 @@ class Pictures(unittest.TestCase):
         with mock.patch.object(film, "Camera", Camera):
             said = film.strip(self.folder / "strip.png", *self.robot())
         self.assertEqual(self.written(), ["strip.png"])
-        self.assertEqual(Image.open(self.folder / "strip.png").size, (2400, 400))
+        with Image.open(self.folder / "strip.png") as image:
+            self.assertEqual(image.size, (2400, 400))
         self.assertRegex(said, r"^(one stride of \d\.\d\d s|fell after .*|no whole stride; its last second)$")
 
     def test_a_video_has_25_images_a_second_and_is_a_gif_without_an_encoder(self):

@@ -13,7 +13,8 @@ ROW = {
     "normalized_error": 0.125, "energy_per_step_j": 2.5, "velocity": [0.45, -0.001], "yaw_rate": -0.7,
     "rmse_settled": 0.1, "off": 0.05, "cost_of_transport": 0.271, "stride_rate_hz": 1.25, "duty_factor": 0.625,
     "double_support": 0.25, "flight_share": 0.0, "foot_clearance": 0.025, "slip_per_stride": 0.012,
-    "arm_swing_deg": 30.0, "trunk_lean_deg": 2.5, "torque_saturated_share": 0.1, "sole_force_peak_weights": 1.75, "action_rate": 0.107,
+    "arm_swing_deg": 30.0, "trunk_lean_deg": 2.5, "torque_saturated_share": 0.1,
+    "sole_force_peak_weights": 1.75, "action_rate": 0.107,
     "saturated_joint": "left_knee_joint", "saturated_shares": {"left_knee_joint": 0.075, "right_knee_joint": 0.05},
 }
 SCRIPT = Path(__file__).parents[1] / "sim2sim.py"
