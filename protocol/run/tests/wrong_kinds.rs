@@ -154,3 +154,15 @@ fn what_a_preset_says_of_presets_stands_above_its_sections() {
         "{said}"
     );
 }
+
+#[test]
+fn what_an_empty_table_lacks_is_told_of_who_gave_the_table() {
+    let mut config =
+        Config::parse("[hike]\nrow = { range = [0, 1] }\nsteps = 3", "a file").unwrap();
+    config.set("hike.row={}").unwrap();
+    let said = config.section::<Hike>().unwrap_err().to_string();
+    assert!(
+        said.starts_with("--set hike.row={}: `row` = {} in [hike]: `range` is missing"),
+        "{said}"
+    );
+}

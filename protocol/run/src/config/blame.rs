@@ -138,10 +138,10 @@ impl Config {
         let inside = format!("{whole}.");
         let mut given = self.origins.iter();
         let found = given.find(|(given, _)| **given == whole || given.starts_with(&inside));
-        found.map_or_else(
-            || self.origin_of_section(section),
-            |(_, origin)| origin.clone(),
-        )
+        let found = found.map(|(_, origin)| origin.as_str());
+        // What is missing is looked for where the table was given that it is missing in.
+        let found = found.or_else(|| self.origin(&whole));
+        found.map_or_else(|| self.origin_of_section(section), str::to_owned)
     }
 
     /// The origin of anything given in the section: right when there is one file, honest otherwise.
