@@ -183,7 +183,14 @@ fn scripts_know_the_options_that_a_readme_gives_them() {
             if !(program.starts_with("deploy/") && program.ends_with(".py")) {
                 continue;
             }
-            let script = std::fs::read_to_string(repository().join(program)).unwrap();
+            let read = |path: PathBuf| std::fs::read_to_string(path).unwrap();
+            let mut script = read(repository().join(program));
+            if script.contains("from transfer") {
+                let modules = std::fs::read_dir(repository().join("deploy/transfer")).unwrap();
+                let paths = modules.map(|entry| entry.unwrap().path());
+                let python = paths.filter(|path| path.extension().is_some_and(|end| end == "py"));
+                script.extend(python.map(read));
+            }
             for option in arguments.iter().filter(|word| word.starts_with("--")) {
                 let known = script.contains(&format!("\"{option}\""));
                 assert!(known, "{readme}: {program} does not know {option}");
