@@ -11,13 +11,14 @@ use terminal::failure::usage;
 use crate::resolve;
 
 /// Those of ours, by name: part of the program, so they need no folder beside it.
-const EMBEDDED: [(&str, &str); 17] = [
+const EMBEDDED: [(&str, &str); 18] = [
     ("ampco", include_str!("../../presets/ampco.toml")),
     (
         "ampco-literal",
         include_str!("../../presets/ampco-literal.toml"),
     ),
     ("g1", include_str!("../../presets/g1.toml")),
+    ("pair", include_str!("../../presets/pair.toml")),
     ("recipe", include_str!("../../presets/recipe.toml")),
     ("amp-0.5", include_str!("../../presets/amp-0.5.toml")),
     ("amp-0.7", include_str!("../../presets/amp-0.7.toml")),
