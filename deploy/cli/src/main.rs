@@ -37,6 +37,7 @@ Examples:
   ampco actor --run walk                          lend another core to a running group
   ampco evaluate walk --command 0.8,0,0 --json    how well the policy walks
   ampco evaluate walk --suite standard            everything it should be able to do, as a report
+  ampco judge my-run walk --out judge             which walks more like the reference, by a fresh judge
   ampco plot walk                                 its learning curves, as SVG
   ampco motions import 02_01.amc --out walks      motion capture, onto the robot
   ampco export walk --out walk-policy             policy.onnx and all that a robot needs
@@ -64,6 +65,7 @@ enum Command {
     Actor(actor::AddActor),
     Status(status::Status),
     Evaluate(judge::Evaluate),
+    Judge(judge::Fresh),
     Plot(plot::Plot),
     Motions(motions::Motions),
     Export(export::Export),
@@ -84,6 +86,7 @@ fn main() -> ExitCode {
         Command::Actor(actor) => actor.run(),
         Command::Status(status) => status.run(),
         Command::Evaluate(evaluate) => evaluate.run(),
+        Command::Judge(judge) => judge.run(),
         Command::Plot(plot) => plot.run(),
         Command::Motions(motions) => motions.run(),
         Command::Export(export) => export.run(),

@@ -74,7 +74,7 @@ impl<'a> Walker<'a> {
     ) -> Result<Tally> {
         let n = unit.episodes;
         let scenario = unit.scenario;
-        let mut fleet = self.fleet(unit, conditions)?;
+        let mut fleet = Self::fleet(self.subject, unit, conditions)?;
         let mut block = Block::new(&fleet);
         let mut robots = vec![Robot::default(); n];
         let mut tally = Tally {
@@ -142,9 +142,14 @@ impl<'a> Walker<'a> {
         Ok(tally)
     }
 
-    fn fleet(&self, unit: &Unit<'_>, conditions: &Conditions) -> Result<Fleet> {
+    /// The robots of a unit, before their first step.
+    pub(super) fn fleet(
+        subject: &Subject,
+        unit: &Unit<'_>,
+        conditions: &Conditions,
+    ) -> Result<Fleet> {
         let scenario = unit.scenario;
-        let mut task = self.subject.task.clone();
+        let mut task = subject.task.clone();
         // Nobody's time is up before ours.
         task.termination.time_out = TimeOutConfig {
             steps: conditions.steps + 1,
@@ -153,7 +158,7 @@ impl<'a> Walker<'a> {
         // A judge counts falls; disobedience shows in the velocity errors.
         task.termination.stray = None;
         let (starts, share) = if scenario.from_reference {
-            (self.subject.starts(scenario.commands[0]), 1.0)
+            (subject.starts(scenario.commands[0]), 1.0)
         } else {
             (Starts::default(), 0.0)
         };
@@ -164,12 +169,12 @@ impl<'a> Walker<'a> {
         let seed = conditions.seed.wrapping_add((unit.first as u64) << 32);
         // Exact sensors where nothing is randomised.
         let tables = match scenario.rows.is_empty() {
-            true => self.subject.kept.tables.exact(),
-            false => self.subject.kept.tables.clone(),
+            true => subject.kept.tables.exact(),
+            false => subject.kept.tables.clone(),
         };
         Ok(Fleet::seen_by(
             &tables,
-            self.subject.mechanics,
+            subject.mechanics,
             &task,
             &randomization,
             starts,
@@ -253,15 +258,15 @@ fn sample(LastStep { state, exertion }: &LastStep) -> Sample {
 }
 
 /// Memory of one step of all robots.
-struct Block {
+pub(super) struct Block {
     /// The states before it.
-    before: Vec<RobotState>,
-    actions: Vec<f32>,
-    rows: StepRows,
+    pub(super) before: Vec<RobotState>,
+    pub(super) actions: Vec<f32>,
+    pub(super) rows: StepRows,
 }
 
 impl Block {
-    fn new(fleet: &Fleet) -> Self {
+    pub(super) fn new(fleet: &Fleet) -> Self {
         let n = fleet.len();
         Self {
             before: vec![RobotState::standing(); n],

@@ -7,6 +7,7 @@
 
 mod command;
 mod episodes;
+mod fresh;
 mod judge;
 mod outcome;
 mod pictures;
@@ -19,6 +20,7 @@ mod spread;
 mod subject;
 mod table;
 mod tally;
+mod windows;
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -34,6 +36,7 @@ use terminal::{Engine, Place, SelfCollision};
 
 pub use command::Command;
 use episodes::{Conditions, Unit, Walker};
+pub use fresh::Fresh;
 pub use judge::Judge;
 use progress::Progress;
 use report::Report;

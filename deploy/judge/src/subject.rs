@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use amp::{Learning, LearningConfig};
 use anyhow::{Context, Result};
-use motion::MotionConfig;
+use motion::{Dataset, MotionConfig};
 use observation::{ObservationConfig, Tables};
 use policy::{Policy, Shape};
 use run::motion::Learned;
@@ -197,15 +197,19 @@ impl Subject {
 
     /// The motion that it was taught by as a measure; where that is not to be had, the built-in gaits, and it is said.
     pub(super) fn reference(&self) -> &Reference {
-        self.reference.get_or_init(|| {
-            let (dataset, lack) = relearned::dataset(&self.kept, &self.motion);
-            if let Some(lack) = lack {
-                say(&format!(
-                    "{lack}: where reference motion is asked for, built-in gaits stand in for it"
-                ));
-            }
-            Reference::of(&dataset)
-        })
+        self.reference
+            .get_or_init(|| Reference::of(&self.dataset()))
+    }
+
+    /// That motion itself.
+    pub(super) fn dataset(&self) -> Dataset {
+        let (dataset, lack) = relearned::dataset(&self.kept, &self.motion);
+        if let Some(lack) = lack {
+            say(&format!(
+                "{lack}: where reference motion is asked for, built-in gaits stand in for it"
+            ));
+        }
+        dataset
     }
 }
 

@@ -4,7 +4,7 @@ mod stages;
 
 use crate::batch::Batch;
 use crate::config::{LearningConfig, OBSERVATION_FLOOR, PpoConfig};
-use crate::discrimination::Discriminator;
+use crate::discrimination::{Discriminator, Figures};
 use crate::error::Fault;
 use crate::ppo::Ppo;
 use crate::replay::Replay;
@@ -148,6 +148,33 @@ impl Learning {
         self.core.discriminator.view().apply(windows, scaled);
         self.core.discriminator.scores(scaled, scores);
         rewards.extend(scores.iter().map(|score| style_reward(*score)));
+    }
+
+    /// Trains the discriminator alone, on reference motion against other motion, as many windows of each as its steps take;
+    /// both as [`Self::style_rewards`] takes them. What it has seen of both counts into its statistics.
+    ///
+    /// # Errors
+    /// If something became NaN or infinite.
+    pub fn teach_judge(
+        &mut self,
+        experts: &[f32],
+        others: &[f32],
+    ) -> Result<Figures, LearningError> {
+        let iteration = self.core.iteration;
+        let discriminator = &mut self.core.discriminator;
+        discriminator.observe(experts);
+        discriminator.observe(others);
+        let view = discriminator.view();
+        let (mut seen, mut seen_others) = (Vec::new(), Vec::new());
+        view.apply(experts, &mut seen);
+        view.apply(others, &mut seen_others);
+        discriminator
+            .update(&seen, &seen_others)
+            .map_err(|Fault { what, value }| LearningError::NotFinite {
+                what,
+                value,
+                iteration,
+            })
     }
 
     /// One iteration: score, blend, estimate advantages, improve the policy, train the discriminator.
