@@ -7,8 +7,8 @@ mod discriminator;
 mod policy;
 mod ppo;
 
-pub use discriminator::DiscriminatorConfig;
 pub(crate) use discriminator::{DECAY, FEATURE_CLIP, HEAD_DECAY, REPLAY_SHARE, floor};
+pub use discriminator::{DiscriminatorConfig, LossKind};
 pub use policy::{ExplorationConfig, ExplorationKind, PolicyConfig};
 pub(crate) use policy::{LAST_GAIN, LEARNED_SIGMA, OBSERVATION_FLOOR};
 pub(crate) use ppo::{GRADIENT_NORM, GREATEST_RATE, KL_BAND, LEAST_RATE, RATE_FACTOR};

@@ -3,7 +3,7 @@
 //! It sees normalised transitions; the gradient penalty is taken where it looks, that is with respect to normalised
 //! expert windows.
 
-use crate::config::{DECAY, DiscriminatorConfig, FEATURE_CLIP, HEAD_DECAY, floor};
+use crate::config::{DECAY, DiscriminatorConfig, FEATURE_CLIP, HEAD_DECAY, LossKind, floor};
 use crate::error::Fault;
 use crate::inference::{self, CHUNK};
 use crate::robot::Robot;
@@ -112,6 +112,7 @@ impl Discriminator {
 
     /// D of windows that are normalised already, `[row][width]`; appended to `scores`.
     pub fn scores(&self, transitions: &[f32], scores: &mut Vec<f32>) {
+        let before = scores.len();
         inference::outputs(
             &self.shape,
             &self.weights,
@@ -119,6 +120,11 @@ impl Discriminator {
             self.threads,
             scores,
         );
+        if self.config.loss == LossKind::Logistic {
+            for score in &mut scores[before..] {
+                *score = losses::score_of_logit(*score);
+            }
+        }
     }
 
     /// The mapping of windows as of now: that of features, for every state.
@@ -205,16 +211,35 @@ impl Discriminator {
             ..Sums::default()
         };
         let width = self.width();
-        let total = |scores: Vec<f32>| scores.iter().map(|d| f64::from(*d)).sum::<f64>();
+        let logistic = self.config.loss == LossKind::Logistic;
+        let total = |outputs: Vec<f32>| -> f64 {
+            let score = |output: &f32| match logistic {
+                true => losses::score_of_logit(*output),
+                false => *output,
+            };
+            outputs.iter().map(|output| f64::from(score(output))).sum()
+        };
         for piece in shards::pieces(part, CHUNK) {
             let numbers = piece.start * width..piece.end * width;
             let rows = |from: &[f32]| tensor(from[numbers.clone()].to_vec(), width, &device);
             let expert = network.forward_all(rows(experts));
             let policy_scores = network.forward(rows(policy));
             let penalty = losses::gradient_penalty(network.input_gradient(&expert.hidden), count);
+            let (of_experts, of_policy) = match self.config.loss {
+                LossKind::LeastSquares => (
+                    losses::expert_loss(expert.output.clone(), count),
+                    losses::policy_loss(policy_scores.clone(), count),
+                ),
+                LossKind::Logistic => (
+                    losses::expert_logistic(expert.output.clone(), count),
+                    losses::policy_logistic(policy_scores.clone(), count),
+                ),
+            };
+            // The slope of a score where nothing is known is half that of its logit.
+            let penalty = if logistic { penalty * 0.25 } else { penalty };
             let loss = losses::amp_loss(
-                losses::expert_loss(expert.output.clone(), count),
-                losses::policy_loss(policy_scores.clone(), count),
+                of_experts,
+                of_policy,
                 penalty.clone(),
                 self.config.gradient_penalty,
             );

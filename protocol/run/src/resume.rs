@@ -99,6 +99,11 @@ const TABLE: &[(&str, Rule, &[&str])] = &[
         Fixed("the discriminator knows states that are so far apart"),
         &["spacing"],
     ),
+    (
+        "discriminator",
+        Fixed("the numbers of a discriminator mean something else with another loss"),
+        &["loss"],
+    ),
     ("discriminator", Present(SHAPE), &["command_blur"]),
     (
         "discriminator",

@@ -22,6 +22,8 @@ pub struct DiscriminatorConfig {
     /// is the easiest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub command_blur: Option<[f32; COMMAND]>,
+    /// What it is trained on: `least_squares`, the paper's Eq. 3 and 4, or `logistic`.
+    pub loss: LossKind,
     /// Widths of hidden layers (ReLU). The recipe's; published trainers use 1024-512.
     pub hidden: Vec<usize>,
     /// Steps per iteration. The recipe's.
@@ -36,6 +38,17 @@ pub struct DiscriminatorConfig {
     pub replay_capacity: usize,
     /// New windows remembered per iteration: capacity and this make a memory of about 50 iterations.
     pub replay_insert: usize,
+}
+
+/// Choices of [`DiscriminatorConfig::loss`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LossKind {
+    /// Scores are drawn to +1 and −1 (Eq. 3 and 4).
+    #[default]
+    LeastSquares,
+    /// Cross-entropy of a logit ℓ; the score is tanh(ℓ/2), which has the same optimum.
+    Logistic,
 }
 
 /// Weight decay of hidden layers. The recipe's.
@@ -66,6 +79,7 @@ impl Default for DiscriminatorConfig {
             frames: 2,
             spacing: 1,
             command_blur: None,
+            loss: LossKind::LeastSquares,
             hidden: vec![256, 128],
             steps: 3,
             batch: 1024,

@@ -57,6 +57,26 @@ fn two_gaussians_are_told_apart() {
 }
 
 #[test]
+fn the_logistic_loss_tells_them_apart_too_and_scores_stay_within_one() {
+    let config = DiscriminatorConfig {
+        loss: LossKind::Logistic,
+        ..small()
+    };
+    let mut judge = discriminator(&config, 2);
+    let mut rng = Pcg64::seed_from_u64(2);
+    let mut figures = Figures::default();
+    for _ in 0..40 {
+        let experts = gaussian(512, 0.3, &mut rng);
+        let policy = gaussian(512, -0.3, &mut rng);
+        figures = judge.update(&experts, &policy).expect("finite");
+    }
+    assert!(figures.expert_score > 0.6 && figures.policy_score < -0.6);
+    let mut scores = Vec::new();
+    judge.scores(&gaussian(200, 9.0, &mut rng), &mut scores);
+    assert!(scores.iter().all(|score| *score > 0.9 && *score <= 1.0));
+}
+
+#[test]
 fn a_heavy_penalty_flattens_the_judge() {
     let after = |penalty: f32| {
         let config = DiscriminatorConfig {
