@@ -60,8 +60,14 @@ fn a_run_begins_with_a_shipped_policy() {
 #[test]
 fn the_actor_of_a_policy_without_critic_waits() {
     let runs = Runs::new();
-    // Shipped before critics were.
-    let shipped = repository().join("deploy/policies/walk");
+    // As policies were shipped before critics were.
+    let whole = repository().join("deploy/policies/walk");
+    let parts = ["policy.bin", "judge.bin"].map(|name| (name, bytes(&whole.join(name))));
+    let parts = parts.each_ref().map(|(name, bytes)| (*name, &bytes[..]));
+    let shipped = run::Checkpoints::new(runs.path().join("shipped"))
+        .write(735, "shipped", &parts)
+        .expect("written");
+    fs::copy(whole.join("config.toml"), shipped.join("config.toml")).expect("copied");
     let from = shipped.to_str().expect("text");
     let hidden = [
         "--set",

@@ -148,7 +148,7 @@ mod tests {
     /// A copy of a shipped policy with another line in its configuration.
     fn shipped_with(folder: &Path, line: &str, instead: &str) -> Result<Subject> {
         let walk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../policies/walk");
-        for name in ["manifest.json", "policy.bin", "judge.bin"] {
+        for name in ["manifest.json", "policy.bin", "judge.bin", "critic.bin"] {
             std::fs::copy(walk.join(name), folder.join(name))?;
         }
         let config = std::fs::read_to_string(walk.join("config.toml"))?;

@@ -67,7 +67,7 @@ mod tests {
     /// The shipped walk as if it had learned from a folder of tables.
     fn walk(place: &Path, clips: &str) -> Kept {
         let from = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../policies/walk"));
-        for name in ["manifest.json", "policy.bin", "judge.bin"] {
+        for name in ["manifest.json", "policy.bin", "judge.bin", "critic.bin"] {
             std::fs::copy(from.join(name), place.join(name)).unwrap();
         }
         let mut config = run::Config::read(&from.join("config.toml")).unwrap();

@@ -146,9 +146,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let again = folder.path().join("policies/walk");
         let files = write(&subject.kept, &again).unwrap();
-        // Shipped before critics were, it has none to pass on.
-        assert_eq!(files.len(), 4);
-        for name in ["policy.bin", "judge.bin"] {
+        assert_eq!(files.len(), 5);
+        for name in ["policy.bin", "judge.bin", "critic.bin"] {
             let bytes = |folder: &Path| std::fs::read(folder.join(name)).unwrap();
             assert_eq!(bytes(&again), bytes(Path::new(walk)), "{name}");
         }
@@ -199,7 +198,7 @@ mod tests {
             config.write(&run.config_path(), "a test").unwrap();
             let at = run.checkpoints().path(30);
             std::fs::create_dir_all(&at).unwrap();
-            for name in ["manifest.json", "policy.bin", "judge.bin"] {
+            for name in ["manifest.json", "policy.bin", "judge.bin", "critic.bin"] {
                 std::fs::copy(Path::new(walk).join(name), at.join(name)).unwrap();
             }
             let print = Print {
