@@ -21,11 +21,12 @@ pub struct Timing {
 
 /// Lets `policy` act in `fleet` for as many steps as `rollout` has room for.
 ///
-/// Allocates nothing. `rollout` may hold old numbers: every block is written, the time-out block
+/// The last `calm` robots explore calmly. Allocates nothing. `rollout` may hold old numbers: every block is written, the time-out block
 /// with zeros where no episode timed out.
 pub fn collect(
     fleet: &mut Fleet,
     policy: &mut Policy,
+    calm: usize,
     generator: &mut Pcg64Mcg,
     rollout: &mut RolloutViewMut<'_>,
 ) -> Timing {
@@ -42,6 +43,7 @@ pub fn collect(
         policy.sample(
             step.observations,
             layout.environments,
+            calm,
             generator,
             step.actions,
             step.means,

@@ -16,6 +16,8 @@ pub struct ActorConfig {
     pub seed: u64,
     /// Size of this actor's rollouts.
     pub layout: RolloutLayout,
+    /// Robots of a rollout that explore calmly.
+    pub calm: usize,
     /// Which engine moves the robots, and what may touch.
     pub mechanics: Mechanics,
     /// What is seen of the robots.
@@ -57,6 +59,7 @@ impl ActorConfig {
                 steps: fleet.steps,
                 lists: Lists::from(&tables),
             },
+            calm: fleet.calm_robots(),
             mechanics: fleet.mechanics(),
             tables,
             task: config.section()?,

@@ -21,6 +21,8 @@ use crate::config::ActorConfig;
 pub(crate) struct Worker {
     fleet: Fleet,
     policy: Policy,
+    /// Robots that explore calmly.
+    calm: usize,
     generator: Pcg64Mcg,
 }
 
@@ -59,6 +61,7 @@ impl Worker {
         let mut worker = Self {
             fleet,
             policy: Policy::new(shape, clip),
+            calm: config.calm,
             generator: Pcg64Mcg::seed_from_u64(mix(seed, 0)),
         };
         if header.order() != Some(WeightsOrder::Collect) {
@@ -172,6 +175,7 @@ impl Worker {
         collect(
             &mut self.fleet,
             &mut self.policy,
+            self.calm,
             &mut self.generator,
             rollout,
         )
@@ -269,6 +273,7 @@ mod tests {
                 steps: 8,
                 lists: Lists::default(),
             },
+            calm: 0,
             mechanics: Physics::Rapier.into(),
             tables: Tables::default(),
             task: TaskConfig {

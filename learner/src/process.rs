@@ -35,6 +35,7 @@ pub fn run(run_dir: &Path, resume: bool) -> Result<()> {
     let mut state = State::begin(&folder, &config, resume)?;
     let mut lines = Lines::open(&folder, &config, &mut state)?;
     let mut batch = Batch::new(robot(&config.tables).widths());
+    batch.calm_share = config.fleet.calm_share;
     let mut learner = Loop {
         started: Instant::now(),
         refusals: 0,

@@ -2,6 +2,7 @@
 
 use pulp::Arch;
 use rand::Rng;
+use vocabulary::CALM;
 
 use crate::gaussian::Gaussian;
 use crate::kernel::{Rows, TILE_ROWS};
@@ -21,6 +22,8 @@ pub struct Policy {
     mean: Vec<f32>,
     inverse_deviation: Vec<f32>,
     gaussian: Gaussian,
+    /// That of robots that explore calmly.
+    calm: Gaussian,
     layers: Vec<Layer>,
     /// Results of the layer before and of the layer at work, for `BLOCK` rows.
     buffers: [Vec<f32>; 2],
@@ -60,6 +63,7 @@ impl Policy {
             inverse_deviation: vec![1.0; shape.inputs],
             clip,
             gaussian: Gaussian::new([1.0; OUTPUTS]),
+            calm: Gaussian::new([CALM; OUTPUTS]),
             layers,
             buffers: [vec![0.0; BLOCK * widest], vec![0.0; BLOCK * widest]],
             shape,
@@ -119,6 +123,7 @@ impl Policy {
         self.inverse_deviation
             .copy_from_slice(&flat[self.shape.inverse_deviation()]);
         self.gaussian = Gaussian::new(sigma);
+        self.calm = Gaussian::new(sigma.map(|sigma| CALM * sigma));
         for (layer, place) in self.layers.iter_mut().zip(self.shape.layers()) {
             layer.load(&flat[place.weights], &flat[place.bias]);
         }
@@ -143,16 +148,18 @@ impl Policy {
         }
     }
 
-    /// Draws actions around the means, with the log-density of each: all in `[n][joints]`, `log_probs` in `[n]`.
+    /// Draws actions around the means, with the log-density of each: all in `[n][joints]`, `log_probs` in `[n]`. In the last
+    /// `calm` rows they are drawn with [`CALM`] times the width.
     ///
     /// Does not allocate.
     ///
     /// # Panics
-    /// If a slice does not hold exactly `n` rows.
+    /// If a slice does not hold exactly `n` rows, or `calm` is more.
     pub fn sample<R: Rng + ?Sized>(
         &mut self,
         observations: &[f32],
         n: usize,
+        calm: usize,
         rng: &mut R,
         actions: &mut [f32],
         means: &mut [f32],
@@ -161,8 +168,14 @@ impl Policy {
         assert_eq!(actions.len(), n * OUTPUTS, "actions of {n} rows");
         assert_eq!(log_probs.len(), n, "log-densities of {n} rows");
         self.means(observations, n, means);
+        let wide = n - calm;
+        let (means, calm_means) = means.split_at(wide * OUTPUTS);
+        let (actions, calm_actions) = actions.split_at_mut(wide * OUTPUTS);
+        let (log_probs, calm_log_probs) = log_probs.split_at_mut(wide);
         self.gaussian
             .sample(self.arch, means, rng, actions, log_probs);
+        self.calm
+            .sample(self.arch, calm_means, rng, calm_actions, calm_log_probs);
     }
 
     /// Up to `BLOCK` rows.

@@ -126,6 +126,7 @@ impl LearnerBench {
             actions: &actions,
             means: &means,
             log_probs: &log_probs,
+            widths: &[],
             advantages: &advantages,
             returns: &advantages,
         };

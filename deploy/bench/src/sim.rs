@@ -167,6 +167,7 @@ impl SimBench {
                     Some(policy) => policy.sample(
                         fleet.observations(),
                         n,
+                        0,
                         &mut random,
                         &mut rows.actions,
                         &mut rows.means,

@@ -5,7 +5,7 @@
 
 use crate::LearningError;
 use crate::columns::{Place, Widths};
-use vocabulary::Cause;
+use vocabulary::{CALM, Cause, calm};
 
 /// One rollout's size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +30,8 @@ macro_rules! fields {
         pub struct Batch {
             segments: Vec<Segment>,
             widths: Widths,
+            /// Share of a rollout's robots that explored calmly, see [`vocabulary::calm()`].
+            pub calm_share: f32,
             $($(#[$doc])* pub $name: Vec<f32>,)*
         }
 
@@ -195,6 +197,23 @@ impl Batch {
             environments,
         });
         self.fit();
+    }
+
+    /// How widely each row explored, in parts of σ; appended to `out`, nothing where all did alike.
+    pub fn exploration(&self, out: &mut Vec<f32>) {
+        if self.calm_share == 0.0 {
+            return;
+        }
+        for Segment {
+            steps,
+            environments,
+        } in &self.segments
+        {
+            let wide = environments - calm(*environments, self.calm_share);
+            for _ in 0..*steps {
+                out.extend((0..*environments).map(|robot| if robot < wide { 1.0 } else { CALM }));
+            }
+        }
     }
 
     /// The rollouts in order.

@@ -43,6 +43,8 @@ pub struct Rows<'a> {
     pub means: &'a [f32],
     /// Log-densities under it, `[row]`.
     pub log_probs: &'a [f32],
+    /// How widely each row was tried, in parts of σ, `[row]`; empty where all were alike.
+    pub widths: &'a [f32],
     /// Not normalised, `[row]`.
     pub advantages: &'a [f32],
     /// Targets of the critic, `[row]`.

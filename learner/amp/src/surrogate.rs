@@ -20,6 +20,19 @@ pub fn log_density(actions: Tensor<2>, means: Tensor<2>, log_sigma: Tensor<2>) -
     distance.square().sum_dim(1) * -0.5 - at_mean
 }
 
+/// [`log_density`] of rows that were tried with `widths` `[n, 1]` times σ.
+pub fn log_density_within(
+    actions: Tensor<2>,
+    means: Tensor<2>,
+    log_sigma: Tensor<2>,
+    widths: Tensor<2>,
+) -> Tensor<2> {
+    let [_, columns] = actions.dims();
+    let distance = (actions - means) * (-log_sigma.clone()).exp() / widths.clone();
+    let at_mean = log_sigma.sum_dim(1) + columns as f32 * HALF_LOG_TAU;
+    distance.square().sum_dim(1) * -0.5 - at_mean - widths.log() * columns as f32
+}
+
 /// L = −E min(ρ·A, clip(ρ, 1 − ε, 1 + ε)·A),  ρ = π(a)/π_old(a)
 ///
 /// `log_density`, `old_log_density`, `advantages` `[n, 1]`, a part of `count` rows.
@@ -67,13 +80,19 @@ pub fn entropy(log_sigma: Tensor<2>) -> Tensor<1> {
 }
 
 /// Exact divergence KL(old ‖ new) of two Gaussians of independent actions, for one row:
-/// Σᵢ (ln(σᵢ/σᵢ_old) + (σᵢ_old² + (μᵢ_old − μᵢ)²)/(2σᵢ²) − ½)
-pub fn divergence(old_means: &[f32], old_sigma: &[f32], means: &[f32], sigma: &[f32]) -> f64 {
+/// Σᵢ (ln(σᵢ/σᵢ_old) + (σᵢ_old² + (μᵢ_old − μᵢ)²)/(2σᵢ²) − ½), every σ `width` times as wide
+pub fn divergence(
+    old_means: &[f32],
+    old_sigma: &[f32],
+    means: &[f32],
+    sigma: &[f32],
+    width: f32,
+) -> f64 {
     let old = old_means.iter().zip(old_sigma);
     let new = means.iter().zip(sigma);
     old.zip(new)
         .map(|((old_mean, old_sigma), (mean, sigma))| {
-            let [old_sigma, sigma] = [f64::from(*old_sigma), f64::from(*sigma)];
+            let [old_sigma, sigma] = [old_sigma, sigma].map(|sigma| f64::from(width * *sigma));
             let distance = f64::from(old_mean - mean);
             (sigma / old_sigma).ln()
                 + (old_sigma * old_sigma + distance * distance) / (2.0 * sigma * sigma)
@@ -86,6 +105,26 @@ pub fn divergence(old_means: &[f32], old_sigma: &[f32], means: &[f32], sigma: &[
 mod tests {
     use super::*;
     use networks::{plain_device, tensor, tracked_device, values};
+
+    #[test]
+    fn a_density_within_half_the_width_is_that_of_half_the_sigma() {
+        let rows = |numbers: &[f32]| tensor(numbers.to_vec(), 2, &plain_device());
+        let (actions, means) = (rows(&[0.3, -0.2, 0.3, -0.2]), rows(&[0.1, 0.1, 0.1, 0.1]));
+        let sigma = |factor: f32| rows(&[(0.4 * factor).ln(), (0.2 * factor).ln()]);
+        let of = |factor| values(log_density(actions.clone(), means.clone(), sigma(factor)));
+        let within = values(log_density_within(
+            actions.clone(),
+            means.clone(),
+            sigma(1.0),
+            column(&[1.0, 0.5]),
+        ));
+        assert!((within[0] - of(1.0)[0]).abs() < 1e-5);
+        assert!((within[1] - of(0.5)[1]).abs() < 1e-5);
+        // −½·(0.5² + 1.5²) − ln 0.4 − ln 0.2 − ln 2π, and with half of each σ −½·4·(…) + 2·ln 2 for the two of them.
+        let wide = -1.25 - 0.08_f32.ln() - std::f32::consts::TAU.ln();
+        assert!((within[0] - wide).abs() < 1e-5);
+        assert!((within[1] - (wide - 3.75 + 2.0 * 2_f32.ln())).abs() < 1e-5);
+    }
 
     fn column(numbers: &[f32]) -> Tensor<2> {
         tensor(numbers.to_vec(), 1, &plain_device())
@@ -168,10 +207,12 @@ mod tests {
 
     #[test]
     fn the_divergence_by_hand() {
-        assert_eq!(divergence(&[1.0], &[0.5], &[1.0], &[0.5]), 0.0);
+        assert_eq!(divergence(&[1.0], &[0.5], &[1.0], &[0.5], 1.0), 0.0);
+        // Half as wide, the same distance counts four times: 0.5²/(2·0.25²).
+        assert!((divergence(&[1.0], &[0.5], &[1.5], &[0.5], 0.5) - 2.0).abs() < 1e-9);
         // one σ apart: ½
-        assert!((divergence(&[1.0], &[0.5], &[1.5], &[0.5]) - 0.5).abs() < 1e-9);
+        assert!((divergence(&[1.0], &[0.5], &[1.5], &[0.5], 1.0) - 0.5).abs() < 1e-9);
         // σ doubled: ln 2 + 1/8 − ½ = 0.318147
-        assert!((divergence(&[0.0], &[1.0], &[0.0], &[2.0]) - 0.318_147).abs() < 1e-6);
+        assert!((divergence(&[0.0], &[1.0], &[0.0], &[2.0], 1.0) - 0.318_147).abs() < 1e-6);
     }
 }

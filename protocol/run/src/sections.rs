@@ -6,7 +6,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vocabulary::invalid::{require, within};
-use vocabulary::{Checked, Mechanics, Physics, Section};
+use vocabulary::{Checked, Mechanics, Physics, Section, calm};
 
 /// When actors collect.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -80,6 +80,9 @@ pub struct FleetConfig {
     pub steps: usize,
     /// Actor processes; 0 = one per core, written out when the run is made.
     pub actors: usize,
+    /// Share of robots that explore half as widely as the others (default 0). Where all do alike, a policy may stand until
+    /// noise has made it step, and without noise it stands.
+    pub calm_share: f32,
 }
 
 impl Default for RunConfig {
@@ -118,6 +121,7 @@ impl Default for FleetConfig {
             environments: 256,
             steps: 32,
             actors: 0,
+            calm_share: 0.0,
         }
     }
 }
@@ -177,6 +181,9 @@ impl Section for FleetConfig {
             let holds = (1..=most).contains(&value);
             require(holds, name, value, format!("use 1 to {most}"))?;
         }
+        let share = self.calm_share;
+        let holds = (0.0..=1.0).contains(&share);
+        require(holds, "calm_share", share, "use 0, nobody, to 1, all")?;
         // The streams are opened for 64 publishers; more could never join.
         require(self.actors <= 64, "actors", self.actors, "use at most 64")?;
         require(
@@ -192,6 +199,11 @@ impl Section for FleetConfig {
 }
 
 impl FleetConfig {
+    /// Robots of each rollout that explore calmly.
+    pub fn calm_robots(&self) -> usize {
+        calm(self.environments_per_actor(), self.calm_share)
+    }
+
     /// The engine, and what may touch in it.
     pub fn mechanics(&self) -> Mechanics {
         Mechanics {

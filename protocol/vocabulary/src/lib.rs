@@ -6,6 +6,7 @@
 //! | subject | file |
 //! | --- | --- |
 //! | why an episode ended | [`cause`] |
+//! | which robots explore calmly | [`mod@calm`] |
 //! | a value that may move over the samples | [`ramp`] |
 //! | why a value of the configuration is refused | [`invalid`] |
 //! | a number that may be `null` in a file | [`number`] |
@@ -13,6 +14,7 @@
 //! | which engine moves the robots | [`physics`] |
 #![forbid(unsafe_code)]
 
+pub mod calm;
 pub mod cause;
 pub mod invalid;
 pub mod number;
@@ -20,6 +22,7 @@ pub mod physics;
 pub mod ramp;
 pub mod section;
 
+pub use calm::{CALM, calm};
 pub use cause::{Cause, Counts, RUNNING};
 pub use invalid::{Checked, Invalid};
 pub use physics::{Mechanics, Physics};

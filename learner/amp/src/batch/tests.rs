@@ -80,3 +80,21 @@ fn a_robot_s_mean_is_over_its_own_rows() {
     let means = batch.means_of_robots(&[0.25, 0.5, 0.75, 1.0, 0.125]);
     assert_eq!(means, [0.5, 0.75, 0.125]);
 }
+
+#[test]
+fn the_last_robots_of_every_rollout_explore_calmly() {
+    let mut batch = Batch::new(simple().widths());
+    batch.add_segment(2, 4);
+    batch.add_segment(1, 2);
+    let explored = |batch: &Batch| {
+        let mut widths = Vec::new();
+        batch.exploration(&mut widths);
+        widths
+    };
+    assert!(explored(&batch).is_empty());
+    batch.calm_share = 0.25;
+    // One of four, and half a robot rounds up to one of two.
+    let [all, half] = [1.0, vocabulary::CALM];
+    let step = [all, all, all, half];
+    assert_eq!(explored(&batch), [&step[..], &step, &[all, half]].concat());
+}

@@ -33,6 +33,8 @@ pub(super) struct Scratch {
     pub(super) values: Vec<f32>,
     pub(super) last_values: Vec<f32>,
     pub(super) timeout_values: Vec<f32>,
+    /// How widely each row was tried.
+    pub(super) exploration: Vec<f32>,
     pub(super) advantages: Vec<f32>,
     pub(super) returns: Vec<f32>,
     pub(super) experts: Vec<f32>,
@@ -219,6 +221,8 @@ impl Learning {
             let scaling = normalizer.scaling();
             scratch.critic.mirror(&batch.critic, mirror, &scaling);
         }
+        scratch.exploration.clear();
+        batch.exploration(&mut scratch.exploration);
         let rows = Rows {
             observations: &scratch.seen.scaled,
             mirrored: &scratch.seen.mirrored_scaled,
@@ -230,6 +234,7 @@ impl Learning {
             actions: &batch.actions,
             means: &batch.means,
             log_probs: &batch.log_probs,
+            widths: &scratch.exploration,
             advantages: &scratch.advantages,
             returns: &scratch.returns,
         };

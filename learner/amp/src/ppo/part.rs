@@ -77,7 +77,16 @@ impl Ppo {
 
             let means = actor.forward(observations.clone());
             let actions = rows(&chunk.actions, joints);
-            let density = surrogate::log_density(actions.clone(), means.clone(), log_sigma.clone());
+            let density = if chunk.widths.is_empty() {
+                surrogate::log_density(actions.clone(), means.clone(), log_sigma.clone())
+            } else {
+                surrogate::log_density_within(
+                    actions.clone(),
+                    means.clone(),
+                    log_sigma.clone(),
+                    rows(&chunk.widths, 1),
+                )
+            };
             let loss = surrogate::clipped_surrogate(
                 density.clone(),
                 rows(&chunk.log_probs, 1),
@@ -136,6 +145,7 @@ impl Ppo {
                         minibatch.old_sigma,
                         &means[action],
                         &new_sigma,
+                        chunk.widths.get(i).copied().unwrap_or(1.0),
                     );
                     sums.kl_rows += 1;
                 }
@@ -200,6 +210,7 @@ impl Ppo {
             }
             chunk.roles.push(role);
             chunk.log_probs.push(rows.log_probs[row]);
+            chunk.widths.extend(rows.widths.get(row));
             let advantage = (rows.advantages[row] - minibatch.shift) * minibatch.scale;
             let (advantage, lesson) = match role {
                 Role::Lesson => (0.0, 1.0),
@@ -231,6 +242,8 @@ struct Chunk {
     actions: Vec<f32>,
     means: Vec<f32>,
     log_probs: Vec<f32>,
+    /// How widely each was tried, in parts of σ; empty where all were alike.
+    widths: Vec<f32>,
     advantages: Vec<f32>,
     returns: Vec<f32>,
     /// 1 where a row is a lesson in symmetry.
@@ -247,6 +260,7 @@ impl Chunk {
             actions: Vec::with_capacity(rows * joints),
             means: Vec::with_capacity(rows * joints),
             log_probs: column(),
+            widths: column(),
             advantages: column(),
             returns: column(),
             lessons: column(),

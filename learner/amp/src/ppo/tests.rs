@@ -88,6 +88,7 @@ impl Bandit {
             actions: &self.actions,
             means: &self.means,
             log_probs: &self.log_probs,
+            widths: &[],
             advantages: &self.rewards,
             returns: &self.rewards,
         }
