@@ -6,7 +6,8 @@ use crate::harness::{program, repository};
 
 #[test]
 fn what_is_exported_walks_in_mujoco_by_the_tests_of_the_transfer() {
-    let Some(python) = needs::python(&["mujoco", "numpy", "onnxruntime", "matplotlib"]) else {
+    let Some(python) = needs::python(&["mujoco", "numpy", "onnxruntime", "matplotlib", "yaml"])
+    else {
         return;
     };
     let folder = tempfile::tempdir().unwrap();

@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use export::{Description, Network, Origin, metadata, network, onnx, tensors};
+use export::{Description, Network, Origin, deploy_yaml, metadata, network, onnx, tensors};
 use g1::mjcf;
 use judge::Kept;
 use sim::RandomizationConfig;
@@ -20,7 +20,8 @@ const MODEL: &str = "g1.xml";
 /// Take a trained policy out: ONNX, safetensors, a description, and the robot as MJCF
 ///
 /// Writes policy.onnx (observation normalisation and deterministic action inside, any batch), policy.safetensors,
-/// policy.json (joints, gains, observation layout, rates, origin) and g1.xml (the robot for MuJoCo).
+/// policy.json (joints, gains, observation layout, rates, origin), deploy.yaml (the same in the layout of Unitree's
+/// controllers) and g1.xml (the robot for MuJoCo).
 #[derive(Debug, clap::Args)]
 pub(crate) struct Export {
     /// A run's name or folder, a checkpoint's folder, or the folder of a shipped policy
@@ -107,6 +108,7 @@ fn files(kept: &Kept, self_collision: SelfCollision) -> Result<Vec<(&'static str
             "policy.safetensors",
             tensors::file(&network).context("writing safetensors")?,
         ),
+        ("deploy.yaml", deploy_yaml::text(&description).into_bytes()),
     ];
     description.origin.files_sha256 = files
         .iter()

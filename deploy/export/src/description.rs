@@ -10,6 +10,7 @@ use observation::{Scene, Table};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::held::{self, HeldMotor};
 use crate::network::Network;
 use crate::onnx;
 use crate::operation::{Commands, Operation};
@@ -34,6 +35,9 @@ pub struct Description {
     pub control: Control,
     /// The joints, in the order of every vector of a number each.
     pub joints: Vec<JointDescription>,
+    /// Motors of the larger G1 that the policy does not drive.
+    #[serde(default)]
+    pub held_motors: Vec<HeldMotor>,
     /// The terms of an observation, in order and without gaps.
     pub observation: Vec<Term>,
     /// What has to be known besides to run it.
@@ -192,6 +196,7 @@ impl Description {
                 first_previous_action: 0.0,
             },
             joints: joints(),
+            held_motors: held::motors(),
             observation: terms(seen),
             operation: Operation::of(commands),
             example: example(network, seen),

@@ -6,7 +6,7 @@
 use crate::description::{Description, Term};
 
 /// What a policy of these terms calls them elsewhere; ours where others have no such term.
-fn elsewhere(name: &str) -> &str {
+pub(crate) fn elsewhere(name: &str) -> &str {
     match name {
         "height" => "base_height",
         "linear_velocity" => "base_lin_vel",
@@ -14,6 +14,7 @@ fn elsewhere(name: &str) -> &str {
         "gravity" => "projected_gravity",
         "command" => "velocity_commands",
         "joint_position" => "joint_pos_rel",
+        "joint_angle" => "joint_pos",
         "joint_velocity" => "joint_vel_rel",
         "previous_action" => "last_action",
         ours => ours,

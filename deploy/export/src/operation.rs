@@ -24,6 +24,8 @@ pub struct Operation {
     pub stop: String,
     /// Who limits torques, and where official files say otherwise.
     pub torque: String,
+    /// In which order a history is seen, and where others do otherwise.
+    pub history: String,
     /// Delay that was trained with.
     pub latency: String,
     /// What meets what.
@@ -66,6 +68,9 @@ impl Operation {
             torque: "the simulation cuts kp·(target − q) − kd·q̇ to ±effort in every physics step; a robot's drives do so \
                      at limits of their own. Ankles are cut at 35 N·m here and at 50 in official files, hip roll at 139 and \
                      at 88 in some"
+                .to_owned(),
+            history: "each term by itself, the present first and then the past, newest first; readers of deploy.yaml expect \
+                      the oldest first"
                 .to_owned(),
             latency: "none: an action acts from the moment that its observation was made".to_owned(),
             collision: "feet meet the ground; legs, arms and trunk meet each other as in g1.xml".to_owned(),

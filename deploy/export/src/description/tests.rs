@@ -70,3 +70,12 @@ fn how_a_term_is_seen_is_told() {
     assert_eq!(example.observation[2..6], [-1.0, 0.0, 0.0, -1.0]);
     assert_eq!(example.observation[9..], [1.0, 0.0, 0.0]);
 }
+
+#[test]
+fn every_motor_of_the_larger_robot_is_driven_or_held() {
+    let driven = joints().into_iter().map(|joint| joint.unitree_motor);
+    let held = held::motors().into_iter().map(|held| held.unitree_motor);
+    let mut all: Vec<u32> = driven.chain(held).collect();
+    all.sort_unstable();
+    assert_eq!(all, (0..29).collect::<Vec<_>>());
+}
