@@ -1,6 +1,6 @@
 # Sourced by check.sh in continuous integration: installs what tests need beside Rust, so that none is skipped there.
 #
-# A Chromium for the page, and a Python of its own with MuJoCo, onnxruntime, YAML and TensorBoard, under target/. Ends with
+# A Chromium for the page, and a Python of its own with MuJoCo, onnxruntime, DDS, YAML and TensorBoard, under target/. Ends with
 # failure where a registry cannot be reached; the tests that lack something are then counted as skipped.
 needs_python=$PWD/target/needs
 if ! command -v chromium >/dev/null 2>&1 && ! command -v google-chrome >/dev/null 2>&1; then
@@ -11,10 +11,10 @@ fi
 # One that was made before may lack what has been added since.
 { [ -x "$needs_python/bin/python" ] || python3 -m venv "$needs_python"; } &&
     "$needs_python/bin/pip" install --quiet --disable-pip-version-check -r deploy/transfer/requirements.txt \
-        tensorboard pyyaml || printf '== needs: no Python with the packages of deploy/transfer could be made\n\n'
+        -r deploy/robot/requirements.txt tensorboard pyyaml || printf '== needs: no Python with the packages of deploy/transfer and deploy/robot could be made\n\n'
 if [ -x "$needs_python/bin/python" ]; then
     AMPCO_PYTHON=$needs_python/bin/python
     export AMPCO_PYTHON
 fi
 { command -v chromium || command -v google-chrome; } >/dev/null 2>&1 &&
-    "${AMPCO_PYTHON:-python3}" -c 'import mujoco, onnxruntime, tensorboard, yaml' >/dev/null 2>&1
+    "${AMPCO_PYTHON:-python3}" -c 'import cyclonedds, mujoco, onnxruntime, tensorboard, yaml' >/dev/null 2>&1
