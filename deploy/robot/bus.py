@@ -1,6 +1,7 @@
 """Topics of Unitree's robots over DDS: states in, commands out, and whether somebody else commands too."""
 
 import time
+from xml.sax.saxutils import quoteattr
 
 from cyclonedds.core import Policy as QosPolicy
 from cyclonedds.core import Qos
@@ -39,7 +40,7 @@ def configuration(interface):
     )
     return (
         '<CycloneDDS><Domain Id="any"><General><Interfaces>'
-        f'<NetworkInterface name="{interface}"{multicast}/></Interfaces></General>{peers}</Domain></CycloneDDS>'
+        f'<NetworkInterface name={quoteattr(interface)}{multicast}/></Interfaces></General>{peers}</Domain></CycloneDDS>'
     )
 
 

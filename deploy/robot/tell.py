@@ -1,5 +1,6 @@
 """Lines for people, written by a thread of their own: a terminal that stalls must not stall a robot."""
 
+import os
 import queue
 import sys
 import threading
@@ -26,7 +27,8 @@ class Teller:
     def _write(self):
         while (line := self._lines.get()) is not None:
             try:
-                print(line, file=self._stream, flush=True)
+                # Past the stream's buffer, which a write that waits would hold when the program ends.
+                os.write(self._stream.fileno(), f"{line}\n".encode())
             except OSError:
                 # Nobody reads any more; the robot goes on.
                 return

@@ -2,8 +2,11 @@
 
 import os
 import pty
+import tempfile
+import time
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -15,6 +18,7 @@ from .motors import DAMPING, Motors
 from .observation import Observer
 from .pace import Pace
 from .state import State, remote_bytes
+from .tell import Teller
 from .wish import Keyboard, Remote, Wish, sticks
 
 EXPORT = Path(os.environ.get("AMPCO_EXPORT", "policy"))
@@ -177,6 +181,27 @@ class OfTheKeyboard(unittest.TestCase):
             self.assertTrue(keyboard.wish(None, 0.0).held)
             os.close(write)
             self.assertFalse(keyboard.wish(None, 1.0).held)
+
+
+class Lines(unittest.TestCase):
+    def test_a_terminal_that_stalls_stalls_nothing_else(self):
+        read, write = os.pipe()
+        began = time.monotonic()
+        with os.fdopen(write, "w") as stream, mock.patch.object(Teller, "PATIENCE", 0.1), Teller(stream) as tell:
+            # More than a pipe holds, and nobody reads.
+            for _ in range(3):
+                tell("x" * 100_000)
+            self.assertLess(time.monotonic() - began, 1.0)
+            os.close(read)
+        self.assertLess(time.monotonic() - began, 5.0)
+
+    def test_lines_come_in_order(self):
+        with tempfile.TemporaryFile("w+") as file:
+            with Teller(file) as tell:
+                for number in range(5):
+                    tell(number)
+            file.seek(0)
+            self.assertEqual(file.read(), "0\n1\n2\n3\n4\n")
 
 
 class Deadlines(unittest.TestCase):

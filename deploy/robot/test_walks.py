@@ -6,6 +6,7 @@ says. Time stands still until a command comes, so that a busy machine changes no
 
 import json
 import os
+import re
 import subprocess
 import sys
 import threading
@@ -16,9 +17,10 @@ from unittest import mock
 from transfer.policy import Policy
 
 from . import loop
-from .bus import COMMANDS, Bus, newest
-from .command import ranges
+from .bus import COMMANDS, Bus, Participant, newest
+from .command import main, ranges
 from .control import Controller
+from .error import RobotError
 from .messages import LowCmd
 from .motors import Motors
 from .observation import Observer
@@ -96,6 +98,16 @@ class OverDds(unittest.TestCase):
         for words in ("policy: walk", "dry run", "standing up: command", "left_knee", "stop: the operator let go"):
             self.assertIn(words, done.stdout)
         self.assertIsNone(newest(self.heard))
+
+    def test_a_network_that_is_not_there_is_named(self):
+        for interface in ("nowhere0", '"/>'):
+            with self.assertRaisesRegex(RobotError, re.escape(interface) + ".*--interface"):
+                Participant(DOMAIN + 100, interface)
+
+    def test_a_policy_that_a_robot_cannot_run_is_refused(self):
+        with self.assertRaises(SystemExit) as ended:
+            main(["run", str(EXPORT), "--domain", str(DOMAIN)])
+        self.assertRegex(ended.exception.code, "policy.json: the policy sees height and linear_velocity, which no robot")
 
     def after_walk(self, code, said, robot):
         self.assertEqual(code, 0)

@@ -15,9 +15,9 @@ from .state import KEYS
 # The dead man's key is held; walking is to begin; forward and leftward velocity (m/s), yaw rate (rad/s).
 Wish = namedtuple("Wish", "held go command")
 
-REMOTE_HELP = "remote: hold L1 for anything to move, let go to stop; START: walk; left stick: go, right stick: turn"
+REMOTE_HELP = "remote: press and hold L1 for anything to move, let go to stop; START: walk; left stick: go, right stick: turn"
 KEYBOARD_HELP = (
-    "keyboard: hold space for anything to move, let go to stop; Enter: walk; up, down: faster, slower; left, right: turn; "
+    "keyboard: press and hold space for anything to move, let go to stop; Enter: walk; up, down: faster, slower; left, right: turn; "
     "Q, E: aside to the left, to the right; 0: command nothing"
 )
 # A held key repeats after half a second at most, and some thirty times a second from then on.
