@@ -2,7 +2,7 @@
 //!
 //! Separate from the process so that gaps, repetitions and resumed learners can be tested without one.
 
-use ampco::{Decision, Report, ReportError, Schedule, ScheduleConfig};
+use ampco::{Decision, Report, ReportError, Schedule};
 use anyhow::Result;
 
 use crate::history::rebuild;
@@ -10,7 +10,8 @@ use crate::history::rebuild;
 /// The schedule and what is needed to put it together again.
 #[derive(Debug)]
 pub(crate) struct Desk {
-    config: ScheduleConfig,
+    /// One that has seen nothing.
+    fresh: Schedule,
     schedule: Schedule,
 }
 
@@ -26,10 +27,10 @@ pub(crate) struct Reply {
 }
 
 impl Desk {
-    /// A desk that knows what the run has recorded so far.
-    pub(crate) fn open(config: ScheduleConfig, records: &[Report]) -> Result<Self> {
-        let schedule = rebuild(&config, records, u64::MAX)?;
-        Ok(Self { config, schedule })
+    /// A desk with a `fresh` schedule that knows what the run has recorded so far.
+    pub(crate) fn open(fresh: Schedule, records: &[Report]) -> Self {
+        let schedule = rebuild(&fresh, records, u64::MAX);
+        Self { fresh, schedule }
     }
 
     /// What is in force.
@@ -47,7 +48,7 @@ impl Desk {
         let newest = self.schedule.newest_iteration().unwrap_or(0);
         let rebuilt = newest.checked_add(1) != Some(report.iteration);
         if rebuilt {
-            self.schedule = rebuild(&self.config, &records()?, report.iteration)?;
+            self.schedule = rebuild(&self.fresh, &records()?, report.iteration);
         }
         let refused = self.schedule.observe(report).err();
         Ok(Reply {
@@ -60,14 +61,17 @@ impl Desk {
 
 #[cfg(test)]
 mod tests {
+    use ampco::ScheduleConfig;
+
     use super::*;
 
-    fn config() -> ScheduleConfig {
-        ScheduleConfig {
+    fn fresh() -> Schedule {
+        Schedule::new(ScheduleConfig {
             window: 5,
             percentile: 0.5,
             ..Default::default()
-        }
+        })
+        .unwrap()
     }
 
     fn report(iteration: u64) -> Report {
@@ -87,7 +91,7 @@ mod tests {
 
     /// What a desk that misses nothing answers to report `iteration`.
     fn expected(iteration: u64) -> Decision {
-        let mut schedule = Schedule::new(config()).unwrap();
+        let mut schedule = fresh();
         (1..=iteration)
             .map(|i| schedule.observe(report(i)).unwrap())
             .last()
@@ -100,7 +104,7 @@ mod tests {
 
     #[test]
     fn reports_in_order_are_answered_without_reading_the_metrics() {
-        let mut desk = Desk::open(config(), &[]).unwrap();
+        let mut desk = Desk::open(fresh(), &[]);
         for iteration in 1..=30 {
             let reply = desk.answer(report(iteration), unread).unwrap();
             assert_eq!(
@@ -112,7 +116,7 @@ mod tests {
 
     #[test]
     fn a_restarted_desk_goes_on_where_the_metrics_end() {
-        let mut desk = Desk::open(config(), &records(1..=17)).unwrap();
+        let mut desk = Desk::open(fresh(), &records(1..=17));
         assert_eq!(
             desk.answer(report(18), unread).unwrap().decision,
             expected(18)
@@ -121,7 +125,7 @@ mod tests {
 
     #[test]
     fn a_gap_is_filled_from_the_metrics() {
-        let mut desk = Desk::open(config(), &records(1..=5)).unwrap();
+        let mut desk = Desk::open(fresh(), &records(1..=5));
         // The learner writes the line of an iteration before or after it reports: both must do.
         for recorded in [13, 14] {
             let reply = desk
@@ -133,14 +137,14 @@ mod tests {
 
     #[test]
     fn a_report_that_was_already_read_from_the_metrics_is_answered() {
-        let mut desk = Desk::open(config(), &records(1..=14)).unwrap();
+        let mut desk = Desk::open(fresh(), &records(1..=14));
         let reply = desk.answer(report(14), || Ok(records(1..=14))).unwrap();
         assert_eq!((reply.decision, reply.refused), (expected(14), None));
     }
 
     #[test]
     fn a_resumed_learner_is_followed_back_out_of_phase_two() {
-        let mut desk = Desk::open(config(), &records(1..=30)).unwrap();
+        let mut desk = Desk::open(fresh(), &records(1..=30));
         assert_eq!(desk.schedule().phase().number(), 2);
         // Resumed at 8, before the switch.
         let reply = desk.answer(report(9), || Ok(records(1..=8))).unwrap();
@@ -156,7 +160,7 @@ mod tests {
 
     #[test]
     fn a_refused_report_is_answered_with_what_was_in_force() {
-        let mut desk = Desk::open(config(), &records(1..=20)).unwrap();
+        let mut desk = Desk::open(fresh(), &records(1..=20));
         let bad = Report {
             style_mean: f64::NAN,
             ..report(21)

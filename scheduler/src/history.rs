@@ -4,18 +4,13 @@
 //! function of its configuration and of the reports in their order, so that observing the recorded ones anew gives the
 //! state, bit by bit, in which an uninterrupted scheduler would be.
 
-use ampco::{Report, Schedule, ScheduleConfig};
-use vocabulary::Invalid;
+use ampco::{Report, Schedule};
 
-/// The schedule after the recorded iterations below `before`.
+/// The schedule after the recorded iterations below `before`; `fresh` is one that has seen nothing.
 ///
 /// Where the record goes back, a learner was resumed: what it did anew replaces what was there. Reports that the
 /// schedule refuses are left out, as they were when they arrived.
-pub(crate) fn rebuild(
-    config: &ScheduleConfig,
-    records: &[Report],
-    before: u64,
-) -> Result<Schedule, Invalid> {
+pub(crate) fn rebuild(fresh: &Schedule, records: &[Report], before: u64) -> Schedule {
     let mut lasting: Vec<Report> = Vec::with_capacity(records.len());
     for record in records.iter().filter(|record| record.iteration < before) {
         while lasting
@@ -26,18 +21,18 @@ pub(crate) fn rebuild(
         }
         lasting.push(*record);
     }
-    let mut schedule = Schedule::new(config.clone())?;
+    let mut schedule = fresh.clone();
     for report in lasting {
         let _refused_then_and_now = schedule.observe(report);
     }
-    Ok(schedule)
+    schedule
 }
 
 #[cfg(test)]
 mod tests {
     use std::fs;
 
-    use ampco::Decision;
+    use ampco::{Decision, ScheduleConfig};
 
     use super::*;
 
@@ -48,6 +43,10 @@ mod tests {
             percentile: 0.5,
             ..Default::default()
         }
+    }
+
+    fn fresh() -> Schedule {
+        Schedule::new(config()).unwrap()
     }
 
     /// A reward that climbs for ten iterations and stays; thirds, so that no decimal is exact.
@@ -95,7 +94,7 @@ mod tests {
 
     #[test]
     fn a_rebuilt_schedule_decides_as_one_that_was_never_away() {
-        let uninterrupted = decisions(Schedule::new(config()).unwrap(), 1);
+        let uninterrupted = decisions(fresh(), 1);
         let switched = uninterrupted
             .iter()
             .position(Decision::just_switched)
@@ -108,7 +107,7 @@ mod tests {
             let text: String = (1..restart)
                 .map(|iteration| line(report(iteration)))
                 .collect();
-            let rebuilt = rebuild(&config(), &records(&text), u64::MAX).unwrap();
+            let rebuilt = rebuild(&fresh(), &records(&text), u64::MAX);
             assert_eq!(
                 decisions(rebuilt, restart),
                 uninterrupted[restart as usize - 1..],
@@ -124,11 +123,12 @@ mod tests {
             smoothing: 4.0,
             ..config()
         };
-        let mut live = Schedule::new(waits.clone()).unwrap();
+        let fresh = Schedule::new(waits).unwrap();
+        let mut live = fresh.clone();
         for restart in 2..=30 {
             live.observe(report(restart - 1)).unwrap();
             let text: String = (1..restart).map(|i| line(report(i))).collect();
-            let rebuilt = rebuild(&waits, &records(&text), u64::MAX).unwrap();
+            let rebuilt = rebuild(&fresh, &records(&text), u64::MAX);
             assert_eq!(rebuilt.decision(restart), live.decision(restart));
         }
         assert!(live.decision(30).switched_at().is_some());
@@ -139,9 +139,7 @@ mod tests {
         let mut text: String = (1..=8).map(|iteration| line(report(iteration))).collect();
         text.push_str(&line(report(9))[..20]);
         assert_eq!(
-            rebuild(&config(), &records(&text), u64::MAX)
-                .unwrap()
-                .newest_iteration(),
+            rebuild(&fresh(), &records(&text), u64::MAX).newest_iteration(),
             Some(8)
         );
     }
@@ -158,26 +156,19 @@ mod tests {
             .chain(abandoned)
             .chain((6..=9).map(report));
         let text: String = whole.map(line).collect();
-        let rebuilt = rebuild(&config(), &records(&text), u64::MAX).unwrap();
-        assert_eq!(
-            decisions(rebuilt, 10),
-            decisions(Schedule::new(config()).unwrap(), 1)[9..]
-        );
+        let rebuilt = rebuild(&fresh(), &records(&text), u64::MAX);
+        assert_eq!(decisions(rebuilt, 10), decisions(fresh(), 1)[9..]);
     }
 
     #[test]
     fn only_what_lies_before_counts() {
         let text: String = (1..=20).map(|iteration| line(report(iteration))).collect();
         assert_eq!(
-            rebuild(&config(), &records(&text), 7)
-                .unwrap()
-                .newest_iteration(),
+            rebuild(&fresh(), &records(&text), 7).newest_iteration(),
             Some(6)
         );
         assert_eq!(
-            rebuild(&config(), &records(&text), 1)
-                .unwrap()
-                .newest_iteration(),
+            rebuild(&fresh(), &records(&text), 1).newest_iteration(),
             None
         );
     }
@@ -191,8 +182,8 @@ mod tests {
             })
             + &line(report(3));
         assert!(text.contains("null"));
-        let rebuilt = rebuild(&config(), &records(&text), u64::MAX).unwrap();
-        let mut live = Schedule::new(config()).unwrap();
+        let rebuilt = rebuild(&fresh(), &records(&text), u64::MAX);
+        let mut live = fresh();
         live.observe(report(1)).unwrap();
         live.observe(Report {
             style_mean: f64::NAN,

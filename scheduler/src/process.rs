@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use ampco::{Decision, Report, ScheduleConfig};
+use ampco::{Decision, Report, Schedule};
 use anyhow::{Context, Result};
 use protocol::{
     Directive, DirectivePublisher, Domain, Node, RewardArrival, RewardSubscriber, Shutdown, Wake,
@@ -23,22 +23,22 @@ pub fn run(run_dir: &Path) -> Result<()> {
     let folder = Folder::open(run_dir)?;
     run::log::init(&folder.logs(), "scheduler").context("opening the log")?;
     let mut held = folder.lock("scheduler")?;
-    let config = crate::config::read(&folder)?;
+    let schedule = crate::config::read(&folder)?;
     let shutdown = Shutdown::on_signals()?;
     let node = Node::join(&Domain::for_run(folder.path())?, "scheduler", &shutdown)?;
-    serve(&folder, config, &node, &mut held)?;
+    serve(&folder, schedule, &node, &mut held)?;
     info!("told to stop");
     Ok(())
 }
 
 /// Answers reports until the node's shutdown is requested.
-fn serve(folder: &Folder, config: ScheduleConfig, node: &Node, held: &mut Lock) -> Result<()> {
+fn serve(folder: &Folder, fresh: Schedule, node: &Node, held: &mut Lock) -> Result<()> {
     let mut reports =
         RewardSubscriber::new(node).context("opening the stream of reward reports")?;
     let mut directives =
         DirectivePublisher::new(node).context("opening the stream of directives")?;
     // After the streams are open: a report that is sent meanwhile waits in them.
-    let mut desk = begin(folder, config)?;
+    let mut desk = begin(folder, fresh)?;
     while reports.wait(SLEEP)? != Wake::Shutdown {
         while let Some(arrival) = reports.receive()? {
             let started = Instant::now();
@@ -53,9 +53,9 @@ fn serve(folder: &Folder, config: ScheduleConfig, node: &Node, held: &mut Lock) 
     Ok(())
 }
 
-fn begin(folder: &Folder, config: ScheduleConfig) -> Result<Desk> {
+fn begin(folder: &Folder, fresh: Schedule) -> Result<Desk> {
     let records = records(folder)?;
-    let desk = Desk::open(config, &records)?;
+    let desk = Desk::open(fresh, &records);
     let schedule = desk.schedule();
     info!(
         method = ?schedule.config().method,

@@ -24,7 +24,7 @@ mod probe;
 mod tables;
 
 pub use error::ConfigError;
-pub use layers::{Source, lay};
+pub use layers::{Source, lay, lay_alone};
 pub use moved::{gone, moved};
 use tables::{collect, mark, merge_tables};
 
@@ -143,6 +143,22 @@ impl Config {
         let mut leaves = BTreeMap::new();
         collect(&self.table, "", &mut leaves);
         leaves
+    }
+
+    /// Samples after which no ramp moves any more but those of some sections; 0 where none does.
+    pub fn settled_but(&self, sections: &[&str]) -> f64 {
+        let leaves = self.leaves();
+        let arrivals = leaves.iter().filter_map(|(path, value)| {
+            let ramp = path.strip_suffix(".samples")?;
+            let section = ramp.split('.').next()?;
+            (!sections.contains(&section)).then_some(())?;
+            leaves.contains_key(&format!("{ramp}.from")).then_some(())?;
+            let arrives = value.as_array()?.last()?;
+            arrives
+                .as_float()
+                .or(arrives.as_integer().map(|whole| whole as f64))
+        });
+        arrivals.fold(0.0, f64::max)
     }
 
     /// Removes the value or table at a dotted path, if there is one.
@@ -273,7 +289,7 @@ impl Config {
 }
 
 /// The one value of a configuration that is one of several tables: of two methods, the later is meant.
-const METHOD: &str = "scheduler.method";
+pub const METHOD: &str = "scheduler.method";
 
 /// Whether two values of [`METHOD`] are of different methods.
 fn other_choice(ours: &Value, theirs: &Value) -> bool {

@@ -306,3 +306,19 @@ fn a_table_over_a_word_is_blamed_on_who_gave_it() {
     );
     assert!(!error.contains("a file"), "{error}");
 }
+
+#[test]
+fn a_configuration_has_settled_when_its_last_ramp_has_arrived() {
+    let settled = |text: &str| {
+        Config::parse(text, "a test")
+            .unwrap()
+            .settled_but(&["fleet"])
+    };
+    let ramps = "[ppo]\nmirrored_share = { from = 0.5, to = 0.0, samples = [1, 1300000] }\n\
+                 [task.start]\nreference_share = { from = 1.0, to = 0.25, samples = [1.5e6, 2.1e6] }\n";
+    assert_eq!(settled(ramps), 2.1e6);
+    let of_fleet = "[fleet]\nx = { from = 0.0, to = 1.0, samples = [1e6, 9e6] }\n";
+    assert_eq!(settled(&format!("{ramps}{of_fleet}")), 2.1e6);
+    // What is called samples elsewhere is no ramp.
+    assert_eq!(settled("[bench]\nsamples = [1, 2]\n"), 0.0);
+}

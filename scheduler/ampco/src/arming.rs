@@ -6,7 +6,8 @@
 //!
 //! It also finds convergence in a reward that pauses. A run whose robots fall after two seconds may earn the same style
 //! for millions of samples before they stay up, and more after that. `episodes_last` waits for what imitation is for:
-//! robots that stay up. Style is then judged to converge on episodes that last.
+//! robots that stay up. Style is then judged to converge on episodes that last. And on a task that stands still: while
+//! commands widen, a style reward that no longer rises has been handed something new to imitate.
 
 use crate::{ArmKind, Report, ScheduleConfig};
 
@@ -39,6 +40,8 @@ pub struct Arming {
     rise_share: f64,
     last_share: f64,
     smoothing: f64,
+    /// The iteration from which on nothing of the run moves by the number of samples.
+    settled: u64,
     count: u64,
     smoothed: f64,
     minimum: f64,
@@ -53,10 +56,19 @@ impl Arming {
             rise_share: RISE_SHARE,
             last_share: LAST_SHARE,
             smoothing: config.smoothing,
+            settled: 0,
             count: 0,
             smoothed: 0.0,
             minimum: f64::INFINITY,
             armed: false,
+        }
+    }
+
+    /// The same, in a run whose task moves until an iteration.
+    pub fn settling(self, iteration: u64) -> Self {
+        Self {
+            settled: iteration,
+            ..self
         }
     }
 
@@ -65,7 +77,9 @@ impl Arming {
         let ready = match self.kind {
             ArmKind::WindowFull => return Arm::Armed,
             ArmKind::AfterRise => self.has_risen(report.style_mean),
-            ArmKind::EpisodesLast => self.lasts(report.episode_share),
+            ArmKind::EpisodesLast => {
+                self.lasts(report.episode_share) && report.iteration >= self.settled
+            }
         };
         match (std::mem::replace(&mut self.armed, ready), ready) {
             (_, false) => Arm::Waiting,
@@ -194,5 +208,22 @@ mod tests {
             seen,
             [Waiting, Waiting, Waiting, Begins, Armed, Waiting, Begins]
         );
+    }
+
+    #[test]
+    fn robots_that_last_wait_for_a_task_that_stands_still() {
+        let seen = |kind| {
+            let mut arming = arming(kind, 0.8, 1.0).settling(3);
+            [1, 2, 3, 4].map(|iteration| {
+                arming.observe(&Report {
+                    iteration,
+                    ..report(0.3, Some(1.0))
+                })
+            })
+        };
+        let lasting = seen(ArmKind::EpisodesLast);
+        assert_eq!(lasting, [Waiting, Waiting, Begins, Armed]);
+        // Algorithm 1 as written knows of no such thing.
+        assert_eq!(seen(ArmKind::WindowFull), [Armed; 4]);
     }
 }

@@ -58,8 +58,9 @@ pub enum ArmKind {
     WindowFull,
     /// Once the smoothed reward has risen from its minimum; the windows begin then.
     AfterRise,
-    /// While episodes last, by their smoothed mean length; the windows begin then. Imitation is for robots that stay up: a
-    /// style reward that stands still while they fall has paused, not converged.
+    /// While episodes last, by their smoothed mean length, once no ramp moves but those of what disturbs robots; the windows begin then.
+    /// Imitation is for robots that stay up: a style reward that stands still while they fall, or while commands still
+    /// widen, has paused, not converged.
     EpisodesLast,
 }
 

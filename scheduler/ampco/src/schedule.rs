@@ -36,6 +36,15 @@ impl Schedule {
         })
     }
 
+    /// The same, of a run whose ramps have all arrived at an iteration: `arm = "episodes_last"` waits for it.
+    #[must_use]
+    pub fn settling(self, iteration: u64) -> Self {
+        Self {
+            arming: self.arming.settling(iteration),
+            ..self
+        }
+    }
+
     /// Takes one iteration's report into account and decides for the next iteration.
     ///
     /// Does not allocate. A refused report leaves the schedule as it was.

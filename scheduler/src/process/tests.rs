@@ -4,7 +4,7 @@ use std::fs;
 use std::thread;
 use std::time::Instant;
 
-use ampco::Schedule;
+use ampco::{Schedule, ScheduleConfig};
 use protocol::{Answer, DirectiveSubscriber, RewardPublisher, RewardReport};
 use run::Metrics;
 use serde_json::json;
@@ -131,7 +131,7 @@ impl Serving {
             shutdown,
             thread: thread::spawn(move || {
                 let mut held = folder.lock("scheduler")?;
-                serve(&folder, config(), &node, &mut held)
+                serve(&folder, Schedule::new(config()).unwrap(), &node, &mut held)
             }),
         }
     }
