@@ -42,7 +42,6 @@ pub fn collect(
         step.features.copy_from_slice(fleet.features());
         policy.sample(
             step.observations,
-            layout.environments,
             calm,
             generator,
             step.actions,

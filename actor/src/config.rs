@@ -7,7 +7,7 @@ use motion::{Dataset, MotionConfig};
 use observation::{ObservationConfig, Tables};
 use protocol::{Lists, RolloutLayout};
 use run::{FleetConfig, Folder, RunConfig};
-use sim::{Mechanics, RandomizationConfig, Starts, TaskConfig};
+use sim::{EventConfig, Mechanics, RandomizationConfig, Starts, TaskConfig};
 use tracing::warn;
 
 /// The sections that an actor needs, read and checked.
@@ -26,6 +26,8 @@ pub struct ActorConfig {
     pub task: TaskConfig,
     /// Table I.
     pub randomization: RandomizationConfig,
+    /// What befalls robots.
+    pub event: EventConfig,
     /// Frames for reference-state initialisation.
     pub starts: Starts,
     /// How long a send may wait for a busy learner.
@@ -64,6 +66,7 @@ impl ActorConfig {
             tables,
             task: config.section()?,
             randomization: config.section()?,
+            event: config.section()?,
             starts: dataset
                 .frames()
                 .map(|(state, command, weight)| (*state, command, weight))

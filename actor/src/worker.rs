@@ -51,7 +51,10 @@ impl Worker {
             &config.tables,
             config.mechanics,
             &config.task.at(header.samples as f64),
-            &config.randomization.at(header.samples as f64),
+            (
+                &config.randomization.at(header.samples as f64),
+                &config.event.at(header.samples as f64),
+            ),
             config.starts.clone(),
             config.layout.environments,
             seed,
@@ -161,6 +164,9 @@ impl Worker {
             self.fleet
                 .set_randomization(config.randomization.at(samples));
         }
+        if config.event.strength.moves() {
+            self.fleet.set_event(&config.event.at(samples));
+        }
         let (shape, clip) = network(config, header, flat.len())?;
         if (self.policy.shape(), self.policy.clip()) != (&shape, clip) {
             self.policy = Policy::new(shape, clip);
@@ -233,7 +239,7 @@ mod tests {
 
     use observation::Tables;
     use protocol::{Lists, RolloutLayout};
-    use sim::{Physics, RandomizationConfig, StartConfig, Starts, TaskConfig};
+    use sim::{EventConfig, Physics, RandomizationConfig, StartConfig, Starts, TaskConfig};
     use vocabulary::Ramp;
 
     use super::*;
@@ -283,6 +289,7 @@ mod tests {
                 },
                 ..TaskConfig::default()
             },
+            event: EventConfig::default(),
             randomization: RandomizationConfig {
                 strength: Ramp::moving(0.0, 1.0, [1e3, 3e3]),
                 ..RandomizationConfig::table_one()

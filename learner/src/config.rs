@@ -112,7 +112,7 @@ fn never_whole(discriminator: &DiscriminatorConfig, steps: usize) -> Option<Stri
     })
 }
 
-/// Samples at which the last ramp of `[task]` and `[randomization]` arrives; 0 where there is none. The learner knows
+/// Samples at which the last ramp of `[task]`, `[randomization]` and `[event]` arrives; 0 where there is none. The learner knows
 /// neither section, but the way a ramp is written: it ends with the second of its `samples`.
 fn settled(config: &Config) -> f64 {
     let number = |value: &Value| {
@@ -123,7 +123,7 @@ fn settled(config: &Config) -> f64 {
     let end = |(path, value): (String, Value)| {
         let (section, name) = (path.split('.').next()?, path.rsplit('.').next()?);
         match (section, name) {
-            ("task" | "randomization", "samples") => number(value.as_array()?.last()?),
+            ("task" | "randomization" | "event", "samples") => number(value.as_array()?.last()?),
             _ => None,
         }
     };
@@ -166,5 +166,7 @@ mod tests {
         assert_eq!(of(&format!("{exploration}{kernel}")), 4e6);
         let table = "[randomization.strength]\nfrom = 0\nto = 1\nsamples = [3e6, 5000000]";
         assert_eq!(of(&format!("{kernel}{table}")), 5e6);
+        let event = "[event.strength]\nfrom = 0\nto = 1\nsamples = [3e6, 6e6]";
+        assert_eq!(of(&format!("{table}\n{event}")), 6e6);
     }
 }

@@ -244,7 +244,7 @@ pub(crate) fn tree<T: Real>(self_collision: bool) -> Tree<T> {
 /// what softness is a share of, so that it does not depend on the step or on the pose.
 fn weights(tree: &Tree<f64>) -> [f64; POINTS] {
     let mut standing = Group::new(());
-    standing.load((), &Block::new(), &[Row::default(); JOINTS], 0);
+    standing.load((), &Block::new(), &[Row::default(); JOINTS], None, 0);
     let mut walk = Walk::new(());
     walk.run((), tree, &standing);
     let mut root = [0.0; DEGREES];

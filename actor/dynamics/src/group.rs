@@ -5,6 +5,7 @@
 //! machine of eight lanes does not drag the other eight through its caches.
 
 use crate::block::{Block, Row, row};
+use crate::condition::{GRAVITY, Own};
 use crate::lane::Lane;
 use crate::tree::SOLES;
 use g1::JOINTS;
@@ -17,6 +18,9 @@ pub(crate) struct Group<L> {
     pub(crate) friction: L,
     /// Target positions of the joints, rad.
     pub(crate) targets: [L; JOINTS],
+    /// Whether the robots have conditions; without, only gravity of these is read.
+    pub(crate) conditioned: bool,
+    pub(crate) own: Own<L>,
     pub(crate) sums: Sums<L>,
 }
 
@@ -55,6 +59,8 @@ impl<L: Lane> Group<L> {
             torso: [zero; row::PER_BODY],
             friction: zero,
             targets: [zero; JOINTS],
+            conditioned: false,
+            own: Own::all(zero),
             sums: Sums {
                 work: zero,
                 soles: [zero; SOLES],
@@ -71,6 +77,7 @@ impl<L: Lane> Group<L> {
         token: L::Token,
         block: &Block<L::Scalar>,
         targets: &[Row<L::Scalar>; JOINTS],
+        own: Option<&Own<Row<L::Scalar>>>,
         lane: usize,
     ) {
         fill(token, &mut self.state, block.rows(), lane);
@@ -78,10 +85,37 @@ impl<L: Lane> Group<L> {
         fill(token, &mut self.targets, targets, lane);
         self.friction = block.friction.get(token, lane);
         let zero = L::splat(token, L::Scalar::default());
+        self.conditioned = own.is_some();
+        match own {
+            None => self.own.lift = [zero, zero, zero.lit(GRAVITY)],
+            Some(own) => self.take(token, own, lane),
+        }
         self.sums.work = zero;
         self.sums.soles = [zero; SOLES];
         self.sums.torques = [zero; JOINTS];
         self.sums.speeds = [zero; JOINTS];
+    }
+
+    /// Other target positions, for the next step.
+    #[inline(always)]
+    pub(crate) fn aim(&mut self, token: L::Token, targets: &[Row<L::Scalar>; JOINTS], lane: usize) {
+        fill(token, &mut self.targets, targets, lane);
+    }
+
+    /// The robots' conditions.
+    #[inline(always)]
+    fn take(&mut self, token: L::Token, from: &Own<Row<L::Scalar>>, lane: usize) {
+        let own = &mut self.own;
+        fill(token, &mut own.stiffness, &from.stiffness, lane);
+        fill(token, &mut own.damping, &from.damping, lane);
+        fill(token, &mut own.driving, &from.driving, lane);
+        fill(token, &mut own.braking, &from.braking, lane);
+        fill(token, &mut own.level, &from.level, lane);
+        fill(token, &mut own.fade, &from.fade, lane);
+        fill(token, &mut own.friction, &from.friction, lane);
+        fill(token, &mut own.drag, &from.drag, lane);
+        fill(token, &mut own.lift, &from.lift, lane);
+        fill(token, &mut own.force, &from.force, lane);
     }
 
     /// Puts the robots back.

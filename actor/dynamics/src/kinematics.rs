@@ -17,9 +17,6 @@ use crate::tree::{
 use g1::collision::CAPSULES;
 use g1::{BODIES, JOINTS, joints, links};
 
-/// Gravity, m/s².
-const GRAVITY: f64 = 9.81;
-
 /// What the walk leaves behind.
 pub(crate) struct Walk<L> {
     /// Motion of every joint at unit speed.
@@ -82,7 +79,7 @@ impl<L: Lane> Walk<L> {
         self.left = self.pelvis.frame.orientation.y;
         self.pelvis.acceleration = Spatial {
             turn: none,
-            shift: Vec3::new(zero, zero, zero.lit(GRAVITY)),
+            shift: Vec3::new(group.own.lift[0], group.own.lift[1], group.own.lift[2]),
         };
         let w = row::ANGULAR;
         self.velocities[links::PELVIS] = Spatial {
@@ -141,6 +138,16 @@ impl<L: Lane> Walk<L> {
         ];
         self.pelvis.carry(&self.torso.inertia, self.torso.force);
         self.base(zero);
+    }
+
+    /// The torso's centre of mass, from the root point, world axes, m.
+    #[inline(always)]
+    pub(crate) fn torso_centre(&self, group: &Group<L>) -> Vec3<L> {
+        let [_, x, y, z, ..] = group.torso;
+        let frame = &self.torso.frame;
+        frame
+            .orientation
+            .turn_add(Vec3::new(x, y, z), frame.position)
     }
 
     /// The base's own part: total mass, first moment, inertia and load.

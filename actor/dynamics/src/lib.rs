@@ -9,6 +9,7 @@
 //! | --- | --- |
 //! | robots by number: state in and out, advance | [`robots`] |
 //! | what acts in the joints | [`drive`] |
+//! | what one robot has of its own | [`condition`] |
 //! | the ground | [`ground`] |
 //! | the tree, contact points | [`tree`] |
 //! | rows of sixteen numbers | [`block`] |
@@ -34,6 +35,7 @@
 pub mod block;
 mod body;
 mod capsules;
+pub mod condition;
 mod contact;
 pub mod drive;
 mod factor;
@@ -48,6 +50,7 @@ mod step;
 pub mod tree;
 
 pub use block::Build;
+pub use condition::Condition;
 pub use drive::Motors;
 pub use ground::{Ground, Heights};
 pub use reference::Reference;

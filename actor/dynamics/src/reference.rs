@@ -77,7 +77,7 @@ impl Reference {
             sweeps: self.sweeps,
         };
         let (mut crew, mut contacts) = (Crew::<f64>::new(()), Contacts::none(()));
-        crew.group.load((), &self.block, &self.targets, 0);
+        crew.group.load((), &self.block, &self.targets, None, 0);
         for _ in 0..steps {
             step((), &setting, &mut [&mut crew], &mut [&mut contacts]);
         }
@@ -174,7 +174,7 @@ impl Reference {
 
     fn walk(&self) -> Walk<f64> {
         let mut group = Group::new(());
-        group.load((), &self.block, &self.targets, 0);
+        group.load((), &self.block, &self.targets, None, 0);
         let mut walk = Walk::new(());
         walk.run((), &self.tree, &group);
         walk

@@ -3,6 +3,7 @@
 //! Separate because callers think of robot 37, while the solver thinks of lane 5 of block 2.
 
 use crate::block::{Block, Build, LANES, Row, row};
+use crate::condition::{Condition, Own};
 use crate::contact::{self, Contacts};
 use crate::drive::Motors;
 use crate::ground::Ground;
@@ -60,6 +61,10 @@ pub struct Robots {
     arch: Arch,
     blocks: Vec<Block<f32>>,
     targets: Vec<[Row<f32>; JOINTS]>,
+    /// Targets of the steps after the first, where any robot has others then.
+    later: Vec<Vec<[Row<f32>; JOINTS]>>,
+    /// What robots have of their own, block by block; nothing while none ever had.
+    own: Vec<Own<Row<f32>>>,
     tallies: Vec<Tally<f32>>,
     count: usize,
 }
@@ -86,6 +91,8 @@ impl Robots {
             arch,
             blocks: vec![Block::new(); blocks],
             targets: vec![[Row::default(); JOINTS]; blocks],
+            later: Vec::new(),
+            own: Vec::new(),
             tallies: vec![Tally::default(); blocks],
             count,
         }
@@ -137,8 +144,53 @@ impl Robots {
     #[inline]
     pub fn set_targets(&mut self, robot: usize, targets: &[f32; JOINTS]) {
         let (block, lane) = self.place(robot);
-        for (row, target) in self.targets[block].iter_mut().zip(targets) {
-            row.0[lane] = *target;
+        aim(&mut self.targets[block], lane, targets);
+        for later in &mut self.later {
+            aim(&mut later[block], lane, targets);
+        }
+    }
+
+    /// Target positions of a robot's joints, rad, in each of the coming steps; those of the last hold from then on.
+    ///
+    /// # Panics
+    /// If there are none.
+    pub fn set_targets_by_step(&mut self, robot: usize, steps: &[[f32; JOINTS]]) {
+        let (block, lane) = self.place(robot);
+        let (first, rest) = steps.split_first().expect("targets for one step at least");
+        while self.later.len() < rest.len() {
+            // Whoever said nothing of these steps goes on as before.
+            let as_before = self.later.last().unwrap_or(&self.targets).clone();
+            self.later.push(as_before);
+        }
+        aim(&mut self.targets[block], lane, first);
+        for (step, later) in self.later.iter_mut().enumerate() {
+            let targets = rest.get(step).or(rest.last()).unwrap_or(first);
+            aim(&mut later[block], lane, targets);
+        }
+    }
+
+    /// Gives a robot a condition of its own, or takes it away. No force acts on it any more. [`Robots::save`] leaves
+    /// conditions out: whoever restores robots gives them again.
+    pub fn set_condition(&mut self, robot: usize, condition: Option<&Condition>) {
+        let (block, lane) = self.place(robot);
+        if condition.is_none() && self.own.is_empty() {
+            return;
+        }
+        let nominal = Condition::nominal(self.solver.motors.clone());
+        if self.own.is_empty() {
+            self.own = vec![Own::of(&nominal); self.blocks.len()];
+        }
+        self.own[block].set(lane, condition.unwrap_or(&nominal));
+    }
+
+    /// A force on the centre of mass of a robot's torso, world frame, N, until another is given.
+    ///
+    /// # Panics
+    /// If no robot has a condition.
+    pub fn set_force(&mut self, robot: usize, force: [f32; 3]) {
+        let (block, lane) = self.place(robot);
+        for (row, force) in self.own[block].force.iter_mut().zip(force) {
+            row.0[lane] = force;
         }
     }
 
@@ -155,6 +207,8 @@ impl Robots {
             steps,
             blocks: &mut self.blocks,
             targets: &self.targets,
+            later: &self.later,
+            own: &self.own,
             tallies: &mut self.tallies,
         });
     }
@@ -221,12 +275,20 @@ impl Robots {
     }
 }
 
+fn aim(rows: &mut [Row<f32>; JOINTS], lane: usize, targets: &[f32; JOINTS]) {
+    for (row, target) in rows.iter_mut().zip(targets) {
+        row.0[lane] = *target;
+    }
+}
+
 /// Steps of all blocks in the machine's widest vectors.
 struct Advance<'a> {
     setting: Setting<'a, f32>,
     steps: usize,
     blocks: &'a mut [Block<f32>],
     targets: &'a [[Row<f32>; JOINTS]],
+    later: &'a [Vec<[Row<f32>; JOINTS]>],
+    own: &'a [Own<Row<f32>>],
     tallies: &'a mut [Tally<f32>],
 }
 
@@ -262,10 +324,17 @@ impl Advance<'_> {
             let (crews, contacts) = (&mut crews[..some], &mut contacts[..some]);
             for (i, crew) in crews.iter_mut().enumerate() {
                 let (block, lane) = place(first + i);
-                let (block, targets) = (&self.blocks[block], &self.targets[block]);
-                crew.group.load(simd, block, targets, lane);
+                let (own, targets) = (self.own.get(block), &self.targets[block]);
+                crew.group
+                    .load(simd, &self.blocks[block], targets, own, lane);
             }
-            for _ in 0..self.steps {
+            for at in 0..self.steps {
+                if let Some(targets) = at.checked_sub(1).and_then(|later| self.later.get(later)) {
+                    for (i, crew) in crews.iter_mut().enumerate() {
+                        let (block, lane) = place(first + i);
+                        crew.group.aim(simd, &targets[block], lane);
+                    }
+                }
                 step(simd, &self.setting, crews, contacts);
             }
             for (i, crew) in crews.iter().enumerate() {

@@ -4,6 +4,7 @@
 //! the old places, places from the new velocities.
 
 use crate::block::row;
+use crate::condition::Own;
 use crate::contact::{self, Contacts, Touch};
 use crate::drive::{AHEAD, Motors, Torque, stop};
 use crate::factor::{self, Factor};
@@ -11,6 +12,7 @@ use crate::ground::Ground;
 use crate::group::Group;
 use crate::kinematics::Walk;
 use crate::lane::{Lane, Real};
+use crate::spatial::{Spatial, Vec3};
 use crate::tree::{BASE, DEGREES, LIMB_FIRST, Tree};
 use g1::{JOINTS, joints};
 
@@ -51,7 +53,12 @@ pub(crate) fn step<L: Lane>(
         crew.walk.run(token, setting.tree, &crew.group);
     }
     for (crew, contacts) in crews.iter_mut().zip(&mut *contacts) {
-        crew.drive(token, setting, contacts);
+        // Twice written out, so that robots without conditions do not read one.
+        if crew.group.conditioned {
+            crew.drive::<true>(token, setting, contacts);
+        } else {
+            crew.drive::<false>(token, setting, contacts);
+        }
     }
     for (crew, contacts) in crews.iter().zip(&mut *contacts) {
         crew.touch(token, setting, contacts);
@@ -91,7 +98,7 @@ impl<L: Lane> Crew<L> {
 
     /// Motors and stops, the factored matrix, and what all forces but contacts do half-way.
     #[inline(always)]
-    fn drive(
+    fn drive<const CONDITIONED: bool>(
         &mut self,
         token: L::Token,
         setting: &Setting<'_, L::Scalar>,
@@ -112,8 +119,20 @@ impl<L: Lane> Crew<L> {
         for i in 0..BASE {
             x[i] = -(dt * walk.bias[i]);
         }
+        let mut twist = None;
+        if CONDITIONED {
+            let [along_x, along_y, along_z] = self.group.own.force;
+            let shift = Vec3::new(along_x, along_y, along_z);
+            let turn = walk.torso_centre(&self.group).cross(shift);
+            let parts = [shift.x, shift.y, shift.z, turn.x, turn.y, turn.z];
+            for (x, part) in x.iter_mut().zip(parts) {
+                *x = part.mul_add(dt, *x);
+            }
+            twist = Some(walk.motions[joints::WAIST].dot(Spatial { turn, shift }));
+        }
         let mut motor = |joint: usize, diagonal: &mut L| {
             let drive = Drive {
+                own: CONDITIONED.then_some(&self.group.own),
                 token,
                 setting,
                 dt,
@@ -131,6 +150,10 @@ impl<L: Lane> Crew<L> {
             for (k, row) in rows.iter_mut().take(count).enumerate() {
                 motor(LIMB_FIRST[limb] + k, &mut row[prefix + k]);
             }
+        }
+        if let Some(twist) = twist {
+            let waist = &mut x[BASE + joints::WAIST];
+            *waist = twist.mul_add(dt, *waist);
         }
         factor::factor(&mut walk.trunk, &mut walk.limbs, &mut self.root);
         self.factor().half(x);
@@ -185,6 +208,8 @@ impl<L: Lane> Crew<L> {
 
 /// What acts in one joint.
 struct Drive<'a, L: Lane> {
+    /// The robots' conditions, where they have any.
+    own: Option<&'a Own<L>>,
     token: L::Token,
     setting: &'a Setting<'a, L::Scalar>,
     dt: L,
@@ -199,10 +224,28 @@ impl<L: Lane> Drive<'_, L> {
         let number = |x: L::Scalar| L::splat(self.token, x);
         let (motors, hinge) = (self.setting.motors, &self.setting.tree.hinges[self.joint]);
         let (dt, zero) = (self.dt, self.dt.lit(0.0));
+        let (stiffness, damping, effort, frictions) = match self.own {
+            None => (
+                number(motors.stiffness[self.joint]),
+                number(motors.damping[self.joint]),
+                number(motors.effort[self.joint]),
+                None,
+            ),
+            Some(own) => {
+                let (stiffness, damping) = (own.stiffness[self.joint], own.damping[self.joint]);
+                let asked = damping.neg_mul_add(speed, stiffness * (target - q));
+                (
+                    stiffness,
+                    damping,
+                    own.limit(self.joint, asked, speed),
+                    Some(own.resistance(self.joint, speed)),
+                )
+            }
+        };
         let torque = Torque::of_motor(
-            number(motors.stiffness[self.joint]),
-            number(motors.damping[self.joint]),
-            number(motors.effort[self.joint]),
+            stiffness,
+            damping,
+            effort,
             target,
             q,
             speed,
@@ -213,8 +256,17 @@ impl<L: Lane> Drive<'_, L> {
         // A brake within the joint, for a speed that is cut off would take momentum from the robot.
         let racing = number(Real::of(SPEED_LIMIT)).less(speed.abs());
         let brake = diagonal.select(racing, zero);
-        *diagonal = torque.damping.mul_add(dt, *diagonal) + (resistance + brake);
-        (torque, brake.neg_mul_add(speed, push))
+        let push = brake.neg_mul_add(speed, push);
+        // The joint's own frictions: what they take is no work of the motor.
+        let (damping, push) = match frictions {
+            None => (torque.damping, push),
+            Some(frictions) => (
+                torque.damping + frictions,
+                (frictions * dt).neg_mul_add(speed, push),
+            ),
+        };
+        *diagonal = damping.mul_add(dt, *diagonal) + (resistance + brake);
+        (torque, push)
     }
 }
 

@@ -14,7 +14,7 @@
 //! `gemm` crate's bare product for 16 rows and more, and a third less for one row.
 //!
 //! **Why not bf16**, where the processor has it. With weights and activations rounded to it, sums in `f32`, the mean actions
-//! of `deploy/policies/athlete` are .019 σ off at σ = .08 (rms, 4,096 standard normal rows): a divergence of .0073 from
+//! of a policy that walks and runs are .019 σ off at σ = .08 (rms, 4,096 standard normal rows): a divergence of .0073 from
 //! the policy that the learner differentiates, where its iterations end by going .002. It would win no more than a
 //! quarter of a microsecond of the eight that a sample costs two cores.
 //!

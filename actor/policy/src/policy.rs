@@ -148,8 +148,8 @@ impl Policy {
         }
     }
 
-    /// Draws actions around the means, with the log-density of each: all in `[n][joints]`, `log_probs` in `[n]`. In the last
-    /// `calm` rows they are drawn with [`CALM`] times the width.
+    /// Draws actions around the means, with the log-density of each: all in `[n][joints]`, `log_probs` in `[n]`, whose
+    /// length says n. In the last `calm` rows they are drawn with [`CALM`] times the width.
     ///
     /// Does not allocate.
     ///
@@ -158,15 +158,14 @@ impl Policy {
     pub fn sample<R: Rng + ?Sized>(
         &mut self,
         observations: &[f32],
-        n: usize,
         calm: usize,
         rng: &mut R,
         actions: &mut [f32],
         means: &mut [f32],
         log_probs: &mut [f32],
     ) {
+        let n = log_probs.len();
         assert_eq!(actions.len(), n * OUTPUTS, "actions of {n} rows");
-        assert_eq!(log_probs.len(), n, "log-densities of {n} rows");
         self.means(observations, n, means);
         let wide = n - calm;
         let (means, calm_means) = means.split_at(wide * OUTPUTS);

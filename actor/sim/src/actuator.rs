@@ -5,7 +5,8 @@
 //! their torque to themselves. Instead each joint's passive spring is set every physics step so that
 //! it pulls with the torque we want; damping is rapier's implicit one, which is stable at any gain.
 
-use crate::model::{BASE_DEGREES, HINGE_AXIS};
+use crate::model::{BASE_DEGREES, GRAVITY, HINGE_AXIS};
+use dynamics::Condition;
 use g1::{ACTION_SCALE, DEFAULT_POSE, JOINT_TABLE, JOINTS};
 use rapier3d::dynamics::{JointAxesMask, JointLimits, Multibody};
 
@@ -35,6 +36,49 @@ impl Gains {
     }
 }
 
+/// What the motors of a robot obey, and what rubs in its joints.
+#[derive(Clone, Copy)]
+pub(crate) enum Law<'a> {
+    /// The gains, and nothing else.
+    Table(&'a Gains),
+    /// What a robot has of its own.
+    Own(&'a Condition),
+}
+
+impl Law<'_> {
+    /// kp, kd of a joint.
+    fn gains(&self, joint: usize) -> (f32, f32) {
+        match self {
+            Law::Table(gains) => (gains.stiffness[joint], gains.damping[joint]),
+            Law::Own(own) => (own.motors.stiffness[joint], own.motors.damping[joint]),
+        }
+    }
+
+    /// The greatest torque of a joint that is asked for one at a speed, N·m.
+    fn limit(&self, joint: usize, asked: f32, speed: f32) -> f32 {
+        match self {
+            Law::Table(gains) => gains.effort[joint],
+            Law::Own(own) => own.limit(joint, asked, speed),
+        }
+    }
+
+    /// What rubs in a joint, as a damping, N·m·s/rad.
+    fn resistance(&self, joint: usize, speed: f32) -> f32 {
+        match self {
+            Law::Table(_) => 0.0,
+            Law::Own(own) => own.resistance(joint, speed),
+        }
+    }
+
+    /// Gravity, world frame, m/s².
+    pub(crate) fn gravity(&self) -> [f32; 3] {
+        match self {
+            Law::Table(_) => [0.0, 0.0, -GRAVITY],
+            Law::Own(own) => own.gravity,
+        }
+    }
+}
+
 /// Target positions of an action, rad: default pose + 0.25·a.
 #[inline]
 pub fn targets(action: &[f32; JOINTS]) -> [f32; JOINTS] {
@@ -54,8 +98,9 @@ pub(crate) struct Torques {
 }
 
 /// Sets the multibody's springs, dampers and stops for the coming physics step:
-/// τ = kp·(target − q) − kd·q̇⁺, or ±effort where kp·(target − q) − kd·q̇ is beyond it.
-pub(crate) fn drive(gains: &Gains, targets: &[f32; JOINTS], multibody: &mut Multibody) -> Torques {
+/// τ = kp·(target − q) − kd·q̇⁺, or ±effort where kp·(target − q) − kd·q̇ is beyond it. What rubs in a joint is damping
+/// as well, and no torque of its motor.
+pub(crate) fn drive(law: Law<'_>, targets: &[f32; JOINTS], multibody: &mut Multibody) -> Torques {
     let mut torques = Torques {
         constant: [0.0; JOINTS],
         damping: [0.0; JOINTS],
@@ -63,15 +108,17 @@ pub(crate) fn drive(gains: &Gains, targets: &[f32; JOINTS], multibody: &mut Mult
     for i in 0..JOINTS {
         let q = position(multibody, i);
         let speed = multibody.generalized_velocity()[BASE_DEGREES + i];
-        let pull = gains.stiffness[i] * (targets[i] - q);
-        let asked = pull - gains.damping[i] * speed;
-        if asked.abs() <= gains.effort[i] {
+        let (stiffness, damping) = law.gains(i);
+        let pull = stiffness * (targets[i] - q);
+        let asked = pull - damping * speed;
+        let limit = law.limit(i, asked, speed);
+        if asked.abs() <= limit {
             torques.constant[i] = pull;
-            torques.damping[i] = gains.damping[i];
+            torques.damping[i] = damping;
         } else {
-            torques.constant[i] = asked.clamp(-gains.effort[i], gains.effort[i]);
+            torques.constant[i] = asked.clamp(-limit, limit);
         }
-        multibody.damping_mut()[BASE_DEGREES + i] = torques.damping[i];
+        multibody.damping_mut()[BASE_DEGREES + i] = torques.damping[i] + law.resistance(i, speed);
         let joint = &mut multibody.link_mut(i + 1).expect("a link per joint").joint;
         joint.set_spring(
             HINGE_AXIS,

@@ -10,7 +10,7 @@ pub(crate) use setting::Setting;
 
 use crate::actuator;
 use crate::command::Occasion;
-use crate::feet::Footing;
+use crate::event::lot::Lot;
 use crate::moment::{self, Moment};
 use crate::physics::Bodies;
 use crate::randomization::{SensorNoise, Table};
@@ -54,10 +54,12 @@ pub(crate) struct Environment {
     command: [f32; 3],
     previous_action: [f32; JOINTS],
     truth: Truth,
+    /// What has befallen the robot for this episode. In a part of its own in snapshots, for most have none.
+    #[serde(skip)]
+    lot: Option<Box<Lot>>,
     /// The pushes of the coming step together, world frame, m/s.
     pushed: Vector3<f32>,
     astray: Astray,
-    feet: Footing,
     /// Steps until a new command; none while the command is held from outside.
     command_in: Option<u32>,
     /// Steps until the next push; none without pushes.
@@ -77,9 +79,9 @@ impl Environment {
             command: [0.0; 3],
             previous_action: [0.0; JOINTS],
             truth: Truth::NOMINAL,
+            lot: None,
             pushed: Vector3::zeros(),
             astray: Astray::default(),
-            feet: Footing::default(),
             command_in: None,
             push_in: None,
             age: 0,
@@ -97,7 +99,7 @@ impl Environment {
     /// Begins a new episode.
     fn reset(&mut self, setting: &Setting, bodies: &mut Bodies, index: usize) {
         let table = &setting.table(index).rows;
-        let variation = table.draw_variation(&mut self.random);
+        let mut variation = table.draw_variation(&mut self.random);
         let kinds = setting.task.command.kinds.as_ref();
         let kind = kinds.map(|kinds| kinds.of_robot(index, setting.robots));
         let start = start::draw(
@@ -111,6 +113,9 @@ impl Environment {
             None => start.state,
             Some(ground) => ground.place(&start.state, setting.task.start.lift, &mut self.random),
         };
+        let mut lot = setting
+            .event(index)
+            .map(|event| Box::new(Lot::draw(event, &mut variation, &mut self.random)));
         self.state = setting.told(bodies.begin(index, &variation, &state));
         self.command = start.command;
         self.previous_action = [0.0; JOINTS];
@@ -120,13 +125,37 @@ impl Environment {
             com_offset: variation.torso_com,
             ..Truth::NOMINAL
         };
+        if let Some(lot) = &mut lot {
+            lot.begin(&self.state);
+            lot.tell(&mut self.truth);
+        }
+        self.lot = lot;
+        self.condition(bodies, index);
         self.pushed = Vector3::zeros();
         self.astray = Astray::at_start(start.fits);
-        self.feet = Footing::default();
         self.command_in = Some(setting.task.command.draw_interval(&mut self.random));
         self.push_in = table.draw_push_interval(&mut self.random);
         self.age = 0;
         self.steps = 0;
+    }
+
+    /// Gives the robot in its engine the condition that is its lot.
+    fn condition(&self, bodies: &mut Bodies, index: usize) {
+        bodies.set_condition(index, self.lot.as_ref().map(|lot| lot.condition()));
+    }
+
+    /// What has befallen the robot.
+    pub(crate) fn lot(&self) -> Option<&Lot> {
+        self.lot.as_deref()
+    }
+
+    /// Takes up a lot where it was left, after everything else.
+    pub(crate) fn resume(&mut self, lot: Option<Lot>, bodies: &mut Bodies, index: usize) {
+        self.lot = lot.map(Box::new);
+        if let Some(lot) = &self.lot {
+            lot.tell(&mut self.truth);
+        }
+        self.condition(bodies, index);
     }
 
     /// Says what the coming control step acts with; false if the action cannot be used.
@@ -153,7 +182,19 @@ impl Environment {
             }
             self.push_in = table.draw_push_interval(&mut self.random);
         }
-        bodies.set_targets(index, &actuator::targets(action));
+        let targets = actuator::targets(action);
+        match &mut self.lot {
+            None => bodies.set_targets(index, &targets),
+            Some(lot) => {
+                let (force, begins) = lot.press(setting.event(index), &mut self.random);
+                if let Some(rule) = setting.task.termination.stray.as_ref().filter(|_| begins) {
+                    self.astray.pushed(rule);
+                }
+                self.truth.lot.force = force;
+                bodies.set_force(index, force);
+                bodies.set_targets_by_step(index, &lot.targets(&targets));
+            }
+        }
         self.previous_action = *action;
         true
     }
@@ -171,6 +212,9 @@ impl Environment {
             return self.broken();
         }
         self.state = setting.told(bodies.state(index));
+        if let Some(lot) = &mut self.lot {
+            lot.sense(&self.state);
+        }
         let rules = &setting.task.termination;
         let stray = rules.stray.as_ref();
         let strayed = stray.is_some_and(|rule| self.astray.step(rule, &self.command, &self.state));
@@ -184,10 +228,9 @@ impl Environment {
             None
         };
         let (energy, foot_forces) = bodies.work_and_forces(index);
-        self.feet.step(foot_forces);
         self.truth.foot_forces = foot_forces;
         self.truth.push = std::mem::take(&mut self.pushed).into();
-        let moment = Moment::new(&self.command, &self.state, energy, &self.feet);
+        let moment = Moment::new(&self.command, &self.state, energy);
         Outcome {
             task_reward: setting.task.pay_and_tell(&moment, sums),
             tracking_error: moment.velocity_error,
@@ -238,23 +281,33 @@ impl Environment {
             previous_action: &self.previous_action,
             truth: &self.truth,
         };
+        let sensed = self.lot.as_ref().map(|lot| lot.seen());
+        let sensed = Scene {
+            state: sensed.as_ref().unwrap_or(&self.state),
+            ..scene
+        };
         let first = self.steps == 0;
-        let mut see = |list: &observation::Table, noise: &SensorNoise, row: &mut [f32]| {
+        let mut see = |list: &observation::Table, scene, noise: &SensorNoise, row: &mut [f32]| {
             if list.is_of_the_present() {
-                list.measure(&scene, row);
+                list.measure(scene, row);
                 noise.blur(row, &mut self.random);
                 list.adjust(row);
             } else {
                 let frame = &mut frame[..list.frame_width()];
-                list.measure(&scene, frame);
+                list.measure(scene, frame);
                 noise.blur(frame, &mut self.random);
                 list.adjust(frame);
                 list.remember(frame, first, row);
             }
         };
-        see(&setting.tables.actor, &table.noise, rows.observation);
+        see(
+            &setting.tables.actor,
+            &sensed,
+            &table.noise,
+            rows.observation,
+        );
         if let Some(critic) = &setting.tables.critic {
-            see(&critic.own, &table.critic_noise, rows.critic);
+            see(&critic.own, &scene, &table.critic_noise, rows.critic);
         }
     }
 

@@ -7,9 +7,11 @@ mod make;
 mod out;
 mod saved;
 
+pub use make::Varied;
 pub use out::StepOut;
 
 use crate::env::{Environment, Rows, Setting};
+use crate::event::EventConfig;
 use crate::physics::{Bodies, Exertion, Physics};
 use crate::randomization::{RandomizationConfig, Table};
 use crate::task::TaskConfig;
@@ -126,6 +128,11 @@ impl Fleet {
     /// their next episode.
     pub fn set_randomization(&mut self, randomization: RandomizationConfig) {
         self.setting.table = Table::of(randomization, &self.setting.tables);
+    }
+
+    /// Goes on with other ranges of `[event]`: forces from the next step, all else from the next episode of a robot.
+    pub fn set_event(&mut self, event: &EventConfig) {
+        self.setting.event = event.has_rows().then(|| event.clone());
     }
 
     /// Holds a command for the rest of an environment's episode. Its observation shows it at once.

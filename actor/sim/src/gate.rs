@@ -4,13 +4,11 @@
 //! follows. A gate is a file of its own and a line of the table below.
 
 pub mod effort;
-pub mod single_stance;
 pub mod upright;
 
 use crate::moment::Moment;
 use crate::terms::{Sums, table};
 use effort::Effort;
-use single_stance::SingleStance;
 use upright::Upright;
 
 table! {
@@ -20,8 +18,6 @@ table! {
     upright: Upright = Some(Upright::default());
     /// Sparing work.
     effort: Effort = None;
-    /// Long steps, or a run.
-    single_stance: SingleStance = None;
 }
 
 impl GateConfig {

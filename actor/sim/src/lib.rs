@@ -14,13 +14,13 @@
 //! | reward terms (Eq. 14 is one), their mean | [`reward`] |
 //! | factors of the reward (Eq. 14 has one) | [`gate`] |
 //! | what a table of terms is | `terms` |
-//! | which feet stand, and since when | [`feet`] |
 //! | what ends an episode: a fall, the time, straying | [`termination`] |
 //! | commands c_t | [`command`] |
 //! | kinds of command, each with its share of the robots | [`kind`] |
 //! | where episodes begin | [`start`] |
 //! | hills and bumps | [`ground`] |
 //! | domain randomisation (Table I) | [`randomization`] |
+//! | what befalls a real robot: delays, other motors, slopes, forces | [`event`] |
 //! | motors: position control, torque limits, energy (III-F) | [`actuator`] |
 //! | the two engines behind one seam | [`physics`] |
 //! | a robot in rapier, state in and out | [`world`], [`model`] |
@@ -35,7 +35,7 @@ pub mod command;
 pub mod engine;
 mod env;
 pub mod error;
-pub mod feet;
+pub mod event;
 pub mod fleet;
 pub mod gate;
 pub mod ground;
@@ -57,7 +57,8 @@ pub use actuator::Gains;
 pub use command::CommandConfig;
 pub use engine::Engine;
 pub use error::SimError;
-pub use fleet::{Fleet, LastStep, StepOut};
+pub use event::EventConfig;
+pub use fleet::{Fleet, LastStep, StepOut, Varied};
 pub use gate::GateConfig;
 pub use ground::GroundConfig;
 pub use kind::{Kind, KindsConfig};

@@ -9,6 +9,9 @@ use rapier3d::dynamics::{GenericJoint, GenericJointBuilder, JointAxesMask, MassP
 use rapier3d::math::{Pose, Rotation, Vector};
 use serde::{Deserialize, Serialize};
 
+/// Gravitational acceleration, m/s².
+pub const GRAVITY: f32 = 9.81;
+
 /// Degrees of freedom of the free base, ahead of the joints in generalised vectors: linear velocity
 /// of the pelvis' centre of mass, then angular velocity, both in the world frame.
 pub(crate) const BASE_DEGREES: usize = 6;

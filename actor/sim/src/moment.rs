@@ -1,6 +1,5 @@
 //! What a step came to, as rewards see it: one robot, after one control step, under the command that it had.
 
-use crate::feet::Footing;
 use g1::RobotState;
 use nalgebra::Vector2;
 
@@ -13,20 +12,17 @@ pub struct Moment<'a> {
     pub state: &'a RobotState,
     /// Positive mechanical work of the motors in the step, J.
     pub work: f32,
-    /// Which feet stand, and for how long.
-    pub feet: &'a Footing,
     /// ‖v* − v‖², planar, heading frame, m²/s².
     pub velocity_error: f32,
 }
 
 impl<'a> Moment<'a> {
     /// With the error of the velocity, which most terms look at.
-    pub fn new(command: &'a [f32; 3], state: &'a RobotState, work: f32, feet: &'a Footing) -> Self {
+    pub fn new(command: &'a [f32; 3], state: &'a RobotState, work: f32) -> Self {
         Self {
             command,
             state,
             work,
-            feet,
             velocity_error: velocity_error(command, state),
         }
     }

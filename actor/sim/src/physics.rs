@@ -9,7 +9,9 @@ mod worlds;
 use crate::actuator::Gains;
 use crate::ground::Ground;
 use crate::model::Variation;
+use crate::time::SUBSTEPS;
 use batched::Batched;
+use dynamics::Condition;
 use g1::{JOINTS, RobotState};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -86,6 +88,26 @@ impl Bodies {
     #[inline]
     pub(crate) fn set_targets(&mut self, robot: usize, targets: &[f32; JOINTS]) {
         both!(self, bodies => bodies.set_targets(robot, targets));
+    }
+
+    /// The same of each of its physics steps.
+    pub(crate) fn set_targets_by_step(
+        &mut self,
+        robot: usize,
+        targets: &[[f32; JOINTS]; SUBSTEPS],
+    ) {
+        both!(self, bodies => bodies.set_targets_by_step(robot, targets));
+    }
+
+    /// Gives a robot that has begun a condition of its own, or takes it away. It is not saved: whoever restores robots
+    /// gives it again.
+    pub(crate) fn set_condition(&mut self, robot: usize, condition: Option<Condition>) {
+        both!(self, bodies => bodies.set_condition(robot, condition));
+    }
+
+    /// A force on the torso of a robot that has a condition in the coming control step, world frame, N.
+    pub(crate) fn set_force(&mut self, robot: usize, force: [f32; 3]) {
+        both!(self, bodies => bodies.set_force(robot, force));
     }
 
     /// One control step of all robots.

@@ -262,11 +262,9 @@ impl RandomizationConfig {
         }
     }
 
-    /// Whether the table leaves a robot alone. Spread evenly over the robots' numbers (by the golden
-    /// ratio), so that it falls on all kinds of command alike.
+    /// Whether the table leaves a robot alone.
     pub fn spares(&self, robot: usize) -> bool {
-        const GOLDEN: f64 = 0.618_033_988_749_894_9;
-        (robot as f64 * GOLDEN).fract() < f64::from(self.plain_share)
+        spares(self.plain_share, robot)
     }
 
     /// The robot and the floor of a new episode.
@@ -322,7 +320,14 @@ impl Table {
     }
 }
 
-fn uniform([least, greatest]: [f32; 2], rng: &mut impl Rng) -> f32 {
+/// Whether a share of the robots has this one. Spread evenly over the robots' numbers (by the golden ratio), so that it
+/// falls on all kinds of command alike.
+pub(crate) fn spares(share: f32, robot: usize) -> bool {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    (robot as f64 * GOLDEN).fract() < f64::from(share)
+}
+
+pub(crate) fn uniform([least, greatest]: [f32; 2], rng: &mut impl Rng) -> f32 {
     least + (greatest - least) * rng.random::<f32>()
 }
 

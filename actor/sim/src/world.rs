@@ -10,8 +10,9 @@ mod meeting;
 #[cfg(test)]
 mod tests;
 
-use crate::actuator::{self, Gains};
+use crate::actuator::{self, Gains, Law};
 use crate::engine::Engine;
+pub use crate::model::GRAVITY;
 use crate::model::{self, BASE_DEGREES};
 pub use crate::time::{CONTROL_STEP, PHYSICS_STEP, SUBSTEPS};
 use g1::{BODIES, JOINTS, RobotState, links};
@@ -23,9 +24,6 @@ use rapier3d::dynamics::{
 use rapier3d::geometry::{BroadPhaseBvh, ColliderHandle, ColliderSet, NarrowPhase};
 use rapier3d::math::{Pose, Vector};
 use serde::{Deserialize, Serialize};
-
-/// Gravitational acceleration, m/s².
-pub const GRAVITY: f32 = 9.81;
 
 const DEGREES: usize = BASE_DEGREES + JOINTS;
 /// Beyond these speeds (m/s, rad/s) a state is taken for a blown-up one.
@@ -138,6 +136,13 @@ impl World {
         }
     }
 
+    /// A force on the torso's centre of mass, world frame, N, until another is given.
+    pub(crate) fn set_force(&mut self, [x, y, z]: [f32; 3]) {
+        let torso = &mut self.bodies[self.links[links::TORSO]];
+        torso.reset_forces(true);
+        torso.add_force(Vector::new(x, y, z), true);
+    }
+
     /// One control step of 20 ms toward target positions (rad), held over its four physics steps.
     pub fn control_step(
         &mut self,
@@ -145,9 +150,19 @@ impl World {
         gains: &Gains,
         targets: &[f32; JOINTS],
     ) -> Exertion {
+        self.control_step_by(engine, Law::Table(gains), &[*targets; SUBSTEPS])
+    }
+
+    /// One control step by a law, toward targets of each of its physics steps.
+    pub(crate) fn control_step_by(
+        &mut self,
+        engine: &mut Engine,
+        law: Law<'_>,
+        targets: &[[f32; JOINTS]; SUBSTEPS],
+    ) -> Exertion {
         let mut exertion = Exertion::default();
-        for _ in 0..SUBSTEPS {
-            let step = self.physics_step(engine, gains, targets);
+        for targets in targets {
+            let step = self.physics_step_by(engine, law, targets);
             exertion.energy += step.energy;
             exertion.take_greatest(&step);
             for (sum, force) in exertion.foot_forces.iter_mut().zip(step.foot_forces) {
@@ -164,9 +179,20 @@ impl World {
         gains: &Gains,
         targets: &[f32; JOINTS],
     ) -> Exertion {
-        let torques = actuator::drive(gains, targets, self.multibody_mut());
+        self.physics_step_by(engine, Law::Table(gains), targets)
+    }
+
+    /// The same by a law.
+    fn physics_step_by(
+        &mut self,
+        engine: &mut Engine,
+        law: Law<'_>,
+        targets: &[f32; JOINTS],
+    ) -> Exertion {
+        let torques = actuator::drive(law, targets, self.multibody_mut());
+        let [x, y, z] = law.gravity();
         engine.pipeline.step(
-            Vector::new(0.0, 0.0, -GRAVITY),
+            Vector::new(x, y, z),
             &engine.parameters,
             &mut self.islands,
             &mut self.broad_phase,

@@ -166,7 +166,6 @@ impl SimBench {
                 match &mut policy {
                     Some(policy) => policy.sample(
                         fleet.observations(),
-                        n,
                         0,
                         &mut random,
                         &mut rows.actions,

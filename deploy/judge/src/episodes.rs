@@ -10,6 +10,7 @@ use vocabulary::{Cause, Ramp};
 
 use super::judge::Judge;
 use super::scenario::Scenario;
+use super::stress::{Acting, Row};
 use super::subject::{Kept, Subject};
 use super::tally::{SETTLING, Sample, Tally, Trace};
 
@@ -82,15 +83,32 @@ impl<'a> Walker<'a> {
             traces: vec![Trace::default(); n],
             ..Tally::default()
         };
-        // The command, and since when.
-        let mut held = (scenario.command(0, conditions.steps), 0);
+        let acting = scenario
+            .stress
+            .as_ref()
+            .map_or_else(Acting::default, Row::acting);
+        let taught = self.subject.task.command.widest()[2];
+        let mut orders: Vec<_> = (0..n)
+            .map(|robot| {
+                acting.orders(
+                    conditions.seed.wrapping_add((unit.first + robot) as u64),
+                    taught,
+                )
+            })
+            .collect();
+        // The command of each robot, and since when.
+        let mut held = vec![(scenario.command(0, conditions.steps), 0); n];
+        let mut seen = vec![0.0; fleet.observations().len()];
         for step in 0..conditions.steps {
-            let command = scenario.command(step, conditions.steps);
-            if command != held.0 {
-                robots.iter_mut().for_each(|robot| robot.close(held.0));
-                held = (command, step);
-            }
             for robot in 0..n {
+                let asked = scenario.command(step, conditions.steps);
+                let command = orders[robot]
+                    .as_mut()
+                    .map_or(asked, |orders| orders.at(step, asked));
+                if command != held[robot].0 {
+                    robots[robot].close(held[robot].0);
+                    held[robot] = (command, step);
+                }
                 if fleet.command(robot) != command {
                     fleet.hold_command(robot, command);
                 }
@@ -103,8 +121,9 @@ impl<'a> Walker<'a> {
             for (robot, before) in block.before.iter_mut().enumerate() {
                 *before = *fleet.state(robot);
             }
-            self.policy
-                .means(fleet.observations(), n, &mut block.actions);
+            seen.copy_from_slice(fleet.observations());
+            acting.withhold(&fleet.tables().actor, &mut seen);
+            self.policy.means(&seen, n, &mut block.actions);
             fleet.step(&block.actions, &mut block.rows.out());
             for (robot, life) in robots
                 .iter_mut()
@@ -113,8 +132,9 @@ impl<'a> Walker<'a> {
             {
                 let last = &fleet.last_step(robot);
                 let states = [&block.before[robot], &last.state];
+                let (command, since) = held[robot];
                 self.judge.take(robot, step == 0, states, &command);
-                let settled = step >= held.1 + SETTLING;
+                let settled = step >= since + SETTLING;
                 tally.add(&block, robot, command, last, life, settled);
                 if conditions.traced {
                     tally.traces[robot].samples.push(sample(last));
@@ -127,8 +147,8 @@ impl<'a> Walker<'a> {
                 break;
             }
         }
-        for robot in &mut robots {
-            robot.close(held.0);
+        for (robot, (command, _)) in robots.iter_mut().zip(held) {
+            robot.close(command);
             tally.off.merge(&robot.off);
             tally.conduct.merge(&robot.conduct);
             tally.settled_conduct.merge(&robot.settled_conduct);
@@ -163,6 +183,11 @@ impl<'a> Walker<'a> {
             (Starts::default(), 0.0)
         };
         task.start.reference_share = Ramp::Constant(share);
+        let acting = scenario
+            .stress
+            .as_ref()
+            .map_or_else(Acting::default, Row::acting);
+        task.ground = acting.ground(task.ground);
         let rows = scenario.rows.iter().map(String::as_str);
         let randomization = RandomizationConfig::only(rows).context("Table I has no such row")?;
         // Robots of one unit differ by their index; units differ by their seed.
@@ -176,7 +201,7 @@ impl<'a> Walker<'a> {
             &tables,
             subject.mechanics,
             &task,
-            &randomization,
+            (&randomization, &acting.event),
             starts,
             unit.episodes,
             seed,

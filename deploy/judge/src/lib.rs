@@ -1,5 +1,19 @@
 //! `ampco evaluate`: how well a policy walks, by the definitions of III-F and by its gait.
 //!
+//! `--stress` tries it under what a real robot and a real floor do (`stress`); `--stress help` lists them:
+//!
+//! | stress | default | what |
+//! | --- | --- | --- |
+//! | `delay` | 20 ms | actions reach the motors later |
+//! | `gains`, `strength` | 0.8, 0.9 times | of the motors: both gains, greatest torque |
+//! | `payload` | 4 kg | on the torso |
+//! | `friction`, `slope`, `bumps` | 0.3, 5°, 2 cm | of the floor |
+//! | `push` | 250 N | on the trunk for 50 ms, every 3 to 5 s |
+//! | `encoder`, `imu` | 0.02 rad, 2° | joints read wrong, the IMU stands aslant |
+//! | `dry` | 1 N·m | dry friction in every joint |
+//! | `velocity` | 0 | share of the pelvis' velocity and change of height that the policy is told |
+//! | `commands` | 2 s | another command as often |
+//!
 //! The policy acts without noise. A robot that fell counts until it fell. Episodes are spread over
 //! threads; the seed alone decides the result.
 
@@ -17,6 +31,7 @@ mod relearned;
 mod report;
 mod scenario;
 mod spread;
+mod stress;
 mod subject;
 mod table;
 mod tally;
@@ -41,6 +56,7 @@ pub use judge::Judge;
 use progress::Progress;
 use report::Report;
 use scenario::Scenario;
+use stress::Stresses;
 pub use subject::{Kept, Subject};
 use tally::Tally;
 
@@ -67,7 +83,8 @@ checkpoint that is kept and never trained on, best of a long run that walks well
 #[command(long_about = LONG)]
 pub struct Evaluate {
     /// A run's name or folder, a checkpoint's folder, or the folder of a shipped policy
-    run: String,
+    #[arg(required_unless_present = "stress")]
+    run: Option<String>,
     #[command(flatten)]
     place: Place,
     /// Command to follow: forward and leftward velocity in m/s, yaw rate in rad/s; may be repeated
@@ -96,6 +113,10 @@ pub struct Evaluate {
     /// them a robot cannot bear
     #[arg(long = "row", value_name = "ROW", conflicts_with_all = ["randomize", "suite"], value_parser = PossibleValuesParser::new(ROWS))]
     rows: Vec<String>,
+    /// Try each command under what real robots and floors do: stresses by name, as in delay=20,push or standard;
+    /// `--stress help` lists them
+    #[arg(long, value_name = "LIST", conflicts_with_all = ["randomize", "rows", "suite"])]
+    stress: Option<Stresses>,
     /// Begin in frames of the reference motion nearest to the command instead of standing
     #[arg(long)]
     from_reference: bool,
@@ -135,8 +156,15 @@ const DEFAULT_COMMANDS: [Command; 2] = [Command([0.5, 0.0, 0.0]), Command([1.0, 
 impl Evaluate {
     /// Walks, and prints and writes how well.
     pub fn run(&self) -> Result<()> {
+        if self.stress == Some(Stresses::Help) {
+            return console::print(&stress::explained());
+        }
+        let run = self
+            .run
+            .as_deref()
+            .ok_or_else(|| usage("give a run: its name, its folder, or that of a checkpoint"))?;
         let conditions = self.conditions()?;
-        let mut subject = Subject::open(&self.place, &self.run)?;
+        let mut subject = Subject::open(&self.place, run)?;
         subject.mechanics = self.self_collision.within(self.physics);
         subject.task.ground = self.ground()?;
         let given = self.judge.as_deref();
@@ -213,12 +241,20 @@ impl Evaluate {
             rows: rows.clone(),
             ..Scenario::holding(command.map(|x| x.to_string()).join(","), command)
         };
-        commands.iter().map(scenario).collect()
+        let plain: Vec<Scenario> = commands.iter().map(scenario).collect();
+        match &self.stress {
+            Some(Stresses::Rows(rows)) => plain
+                .iter()
+                .flat_map(|scenario| rows.iter().map(|row| scenario.under(row)))
+                .collect(),
+            _ => plain,
+        }
     }
 
     fn suite_name(&self) -> &'static str {
         match self.suite {
             Some(Suite::Standard) => "standard",
+            None if self.stress.is_some() => "stress",
             None => "commands",
         }
     }

@@ -50,6 +50,9 @@ pub(super) struct Row {
     from_reference: bool,
     randomize: bool,
     push: Option<f32>,
+    /// What stressed the robots: names and sizes, `none` where nothing did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stress: Option<String>,
     /// The reference motion nearest to the command, where there is one command.
     pub(super) reference: Option<Nearest>,
     #[serde(flatten)]
@@ -76,6 +79,7 @@ impl Report {
                 from_reference: scenario.from_reference,
                 randomize: !scenario.rows.is_empty(),
                 push: scenario.push,
+                stress: scenario.stress.as_ref().map(|row| row.label.clone()),
                 reference: single
                     .then(|| subject.reference().nearest(command))
                     .flatten(),
@@ -201,6 +205,7 @@ mod tests {
             from_reference: false,
             randomize: false,
             push: None,
+            stress: None,
             reference: None,
             outcome: Tally {
                 episodes: 4,

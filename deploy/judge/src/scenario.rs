@@ -7,6 +7,8 @@ use std::f32::consts::TAU;
 use g1::COMMAND;
 use sim::randomization::ROWS;
 
+use super::stress::Row;
+
 /// One thing that robots are tried at.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Scenario {
@@ -20,6 +22,8 @@ pub(super) struct Scenario {
     pub(super) rows: Vec<String>,
     /// Size of the pushes, m/s.
     pub(super) push: Option<f32>,
+    /// What stresses the robots.
+    pub(super) stress: Option<Row>,
 }
 
 /// Pushes come at these shares of an episode: every 4 s of 20.
@@ -34,6 +38,16 @@ impl Scenario {
             from_reference: false,
             rows: Vec::new(),
             push: None,
+            stress: None,
+        }
+    }
+
+    /// The same under stress.
+    pub(super) fn under(&self, row: &Row) -> Self {
+        Self {
+            name: format!("{} {}", self.name, row.label),
+            stress: Some(row.clone()),
+            ..self.clone()
         }
     }
 
@@ -70,6 +84,9 @@ impl Scenario {
         } else {
             "from standing"
         };
+        if let Some(row) = self.stress.as_ref().filter(|row| !row.values.is_empty()) {
+            return format!("{start}, {}", row.label);
+        }
         match self.rows.len() {
             0 => start.to_owned(),
             count if count == ROWS.len() => format!("{start}, Table I"),
@@ -149,6 +166,7 @@ pub(super) fn standard() -> Vec<Scenario> {
                 from_reference,
                 rows: rows.clone(),
                 push: None,
+                stress: None,
             };
             suite.extend(held.map(|(name, command)| under(name, vec![command])));
             if !from_reference {

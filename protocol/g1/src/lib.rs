@@ -8,6 +8,7 @@
 //! | --- | --- |
 //! | masses and inertias of the 24 bodies, the foot box | [`links`] |
 //! | the 23 joints: frames, limits, gains, default pose, the joint order | [`joints`] |
+//! | torque of the motors at speed | [`motors`] |
 //! | measures of a gait: hips, contacts, feet, motors, and a verdict | [`gait`] |
 //! | a state of the robot and its frames | [`state`] |
 //! | what the policy and the discriminator see | [`observation`] |
@@ -25,6 +26,7 @@ pub mod kinematics;
 pub mod links;
 pub mod mirror;
 pub mod mjcf;
+pub mod motors;
 pub mod observation;
 pub mod shapes;
 pub mod state;

@@ -30,7 +30,7 @@ pub mod terms;
 
 pub use config::{JudgedList, ObservationConfig, SeenList, SeenTerm};
 pub use print::Print;
-pub use scene::{Scene, Truth};
+pub use scene::{Lot, Scene, Truth};
 pub use table::{Entry, Reflection, Table};
 pub use tables::{Critic, Place, Places, Tables, Widths};
 pub use term::{Kind, Term, Writer};

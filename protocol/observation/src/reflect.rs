@@ -23,6 +23,11 @@ pub(crate) fn of_joints(i: usize) -> (usize, f32) {
     (mirror.index[i], mirror.sign[i])
 }
 
+/// Of a number for each joint that has no direction.
+pub(crate) fn pairs(i: usize) -> (usize, f32) {
+    (g1::mirror::ACTION_MIRROR.index[i], 1.0)
+}
+
 /// Of a number for the left side and one for the right.
 pub(crate) fn sides(i: usize) -> (usize, f32) {
     (1 - i, 1.0)

@@ -28,6 +28,44 @@ pub struct Truth {
     pub foot_forces: [f32; 2],
     /// The jump of velocity by a push in the last step, world frame, m/s; zeros where there was none.
     pub push: [f32; 3],
+    /// What has befallen it. Not written down: whoever knows it says it again.
+    #[serde(skip)]
+    pub lot: Lot,
+}
+
+/// What has befallen a robot for an episode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lot {
+    /// From an action to the motors, and age of what the policy sees, s.
+    pub delays: [f32; 2],
+    /// Factor of every motor's stiffness.
+    pub stiffness: [f32; JOINTS],
+    /// Factor of every motor's damping.
+    pub damping: [f32; JOINTS],
+    /// Factor of every motor's greatest torque.
+    pub motor_strength: [f32; JOINTS],
+    /// Direction of gravity, world frame, unit length.
+    pub down: [f32; 3],
+    /// Force on the torso in the last step, world frame, N.
+    pub force: [f32; 3],
+}
+
+impl Lot {
+    /// Nothing has.
+    pub const NOMINAL: Self = Self {
+        delays: [0.0; 2],
+        stiffness: [1.0; JOINTS],
+        damping: [1.0; JOINTS],
+        motor_strength: [1.0; JOINTS],
+        down: [0.0, 0.0, -1.0],
+        force: [0.0; 3],
+    };
+}
+
+impl Default for Lot {
+    fn default() -> Self {
+        Self::NOMINAL
+    }
 }
 
 impl Truth {
@@ -38,6 +76,7 @@ impl Truth {
         com_offset: [0.0; 3],
         foot_forces: [0.0; 2],
         push: [0.0; 3],
+        lot: Lot::NOMINAL,
     };
 }
 

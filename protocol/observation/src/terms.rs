@@ -3,6 +3,7 @@
 mod base;
 mod bodies;
 mod joints;
+mod lot;
 mod task;
 mod truth;
 
@@ -10,7 +11,7 @@ use crate::scene::Scene;
 use crate::term::{Term, Writer};
 
 /// Every term that there is.
-pub static TERMS: [&Term; 16] = [
+pub static TERMS: [&Term; 22] = [
     &base::HEIGHT,
     &base::LINEAR_VELOCITY,
     &base::ANGULAR_VELOCITY,
@@ -27,6 +28,12 @@ pub static TERMS: [&Term; 16] = [
     &truth::FOOT_FORCES,
     &truth::CONTACTS,
     &truth::PUSH,
+    &lot::DELAYS,
+    &lot::STIFFNESS,
+    &lot::DAMPING,
+    &lot::MOTOR_STRENGTH,
+    &lot::SLOPE,
+    &lot::FORCE,
 ];
 
 /// Sequences of terms that one function writes at once: the paper's two lists. They write what the terms' own functions

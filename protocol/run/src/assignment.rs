@@ -151,7 +151,7 @@ mod tests {
 
     #[test]
     fn what_a_preset_says_of_presets_is_no_value() {
-        for given in ["on=agile", "unset=[\"ppo.epochs\"]", "unset={}", "on.x=1"] {
+        for given in ["on=g1", "unset=[\"ppo.epochs\"]", "unset={}", "on.x=1"] {
             let said = parse(given).unwrap_err();
             assert!(
                 said.contains("file of a preset") && said.contains("--preset"),

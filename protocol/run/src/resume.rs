@@ -65,6 +65,7 @@ const TABLE: &[(&str, Rule, &[&str])] = &[
     ("fleet", Free, &[]),
     ("task", Free, &[]),
     ("randomization", Free, &[]),
+    ("event", Free, &[]),
     ("motion", Free, &[]),
     ("observation", Fixed(SEEN), &[]),
     ("policy", Fixed(SHAPE), &["hidden", "critic_hidden"]),

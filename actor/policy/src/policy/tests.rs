@@ -174,7 +174,6 @@ fn samples_repeat_with_the_seed_and_their_density_is_that_of_the_action() {
         let mut rng = Pcg64::seed_from_u64(seed);
         policy.sample(
             &observations,
-            n,
             20,
             &mut rng,
             &mut actions,

@@ -30,7 +30,7 @@ fn torque_is_stiffness_times_error_less_damping_times_speed() {
     goal[3] += 0.1; // knee, 150 N·m/rad: 15 N·m
     goal[16] += 2.0; // elbow, 40 N·m/rad: 80 N·m asked, 25 given
     let gains = Gains::of_the_robot();
-    let torques = drive(&gains, &goal, world.multibody_mut());
+    let torques = drive(Law::Table(&gains), &goal, world.multibody_mut());
     assert!((torques.of(3, 0.0) - 15.0).abs() < 1e-3);
     assert!((torques.of(3, 0.5) - 13.0).abs() < 1e-3); // 15 − 4·0.5
     assert_eq!(torques.of(16, 0.0), 25.0);

@@ -1,7 +1,8 @@
 //! What the environments of a fleet share.
 
+use crate::event::EventConfig;
 use crate::ground::Ground;
-use crate::randomization::Table;
+use crate::randomization::{self, Table};
 use crate::start::{Pools, Starts};
 use crate::task::TaskConfig;
 use g1::RobotState;
@@ -13,6 +14,8 @@ pub(crate) struct Setting {
     pub(crate) table: Table,
     /// The table of robots that it leaves alone: every row off.
     pub(crate) plain: Table,
+    /// What befalls robots; none where nothing does.
+    pub(crate) event: Option<EventConfig>,
     pub(crate) starts: Starts,
     /// The starts by kind of command.
     pub(crate) pools: Pools,
@@ -41,5 +44,11 @@ impl Setting {
         } else {
             &self.table
         }
+    }
+
+    /// What befalls a robot.
+    pub(crate) fn event(&self, robot: usize) -> Option<&EventConfig> {
+        let event = self.event.as_ref()?;
+        (!randomization::spares(event.plain_share, robot)).then_some(event)
     }
 }

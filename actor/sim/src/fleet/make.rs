@@ -4,6 +4,7 @@ use super::Fleet;
 use crate::actuator::Gains;
 use crate::env::{Environment, Setting};
 use crate::error::SimError;
+use crate::event::EventConfig;
 use crate::physics::{Bodies, Mechanics};
 use crate::randomization::{RandomizationConfig, Table};
 use crate::start::{Pools, Starts};
@@ -11,6 +12,7 @@ use crate::task::TaskConfig;
 use crate::terms::Sums;
 use observation::Tables;
 use vocabulary::Section;
+use vocabulary::invalid::within;
 
 /// What a fleet is of, whatever it does.
 pub(super) struct Make {
@@ -19,13 +21,38 @@ pub(super) struct Make {
     pub(super) tables: Tables,
 }
 
+/// How robots and their worlds differ from the tables.
+#[derive(Clone, Debug, Default)]
+pub struct Varied {
+    /// Table I.
+    pub randomization: RandomizationConfig,
+    /// What befalls them.
+    pub event: EventConfig,
+}
+
+impl From<&RandomizationConfig> for Varied {
+    /// Nothing befalls them.
+    fn from(randomization: &RandomizationConfig) -> Self {
+        (randomization, &EventConfig::default()).into()
+    }
+}
+
+impl From<(&RandomizationConfig, &EventConfig)> for Varied {
+    fn from((randomization, event): (&RandomizationConfig, &EventConfig)) -> Self {
+        Self {
+            randomization: randomization.clone(),
+            event: event.clone(),
+        }
+    }
+}
+
 impl Fleet {
     /// Environments at the start of their first episodes, seen as in the paper. An engine alone means robots whose parts
     /// meet each other.
     pub fn new(
         mechanics: impl Into<Mechanics>,
         task: &TaskConfig,
-        randomization: &RandomizationConfig,
+        varied: impl Into<Varied>,
         starts: Starts,
         environments: usize,
         seed: u64,
@@ -34,7 +61,7 @@ impl Fleet {
             &Tables::default(),
             mechanics,
             task,
-            randomization,
+            varied,
             starts,
             environments,
             seed,
@@ -46,7 +73,7 @@ impl Fleet {
         tables: &Tables,
         mechanics: impl Into<Mechanics>,
         task: &TaskConfig,
-        randomization: &RandomizationConfig,
+        varied: impl Into<Varied>,
         starts: Starts,
         environments: usize,
         seed: u64,
@@ -56,13 +83,13 @@ impl Fleet {
             gains: Gains::of_the_robot(),
             tables: tables.clone(),
         };
-        Self::build(make, task, randomization, starts, environments, seed)
+        Self::build(make, task, varied, starts, environments, seed)
     }
 
     pub(super) fn build(
         make: Make,
         task: &TaskConfig,
-        randomization: &RandomizationConfig,
+        varied: impl Into<Varied>,
         starts: Starts,
         environments: usize,
         seed: u64,
@@ -73,7 +100,13 @@ impl Fleet {
             tables,
         } = make;
         task.validate()?;
+        let Varied {
+            randomization,
+            event,
+        } = varied.into();
         randomization.validate()?;
+        within(EventConfig::NAME, event.validate())?;
+        within(EventConfig::NAME, event.check_beside(&randomization))?;
         starts.validate()?;
         vocabulary::invalid::require(
             environments > 0,
@@ -83,9 +116,10 @@ impl Fleet {
         )?;
         let setting = Setting {
             task: task.clone(),
-            table: Table::of(randomization.clone(), &tables),
+            table: Table::of(randomization, &tables),
             plain: Table::of(RandomizationConfig::default(), &tables.exact()),
             pools: Pools::of(&starts),
+            event: event.has_rows().then_some(event),
             starts,
             tables,
             robots: environments,

@@ -1,6 +1,7 @@
 //! Contracts of the fleet: robots, actions and tasks that all of its tests share.
 
 mod episodes;
+mod event;
 mod faults;
 mod repeat;
 mod reward;

@@ -5,7 +5,7 @@ use crate::actuator::Gains;
 use crate::ground::Ground;
 use crate::model::Variation;
 use crate::time::{PHYSICS_STEP, SUBSTEPS};
-use dynamics::{Build, Motors, Robots, Saved, Solver};
+use dynamics::{Build, Condition, Motors, Robots, Saved, Solver};
 use g1::{JOINT_TABLE, JOINTS, RobotState};
 use nalgebra::Vector3;
 
@@ -57,6 +57,22 @@ impl Batched {
     #[inline]
     pub(crate) fn set_targets(&mut self, robot: usize, targets: &[f32; JOINTS]) {
         self.0.set_targets(robot, targets);
+    }
+
+    pub(crate) fn set_targets_by_step(
+        &mut self,
+        robot: usize,
+        targets: &[[f32; JOINTS]; SUBSTEPS],
+    ) {
+        self.0.set_targets_by_step(robot, targets);
+    }
+
+    pub(crate) fn set_condition(&mut self, robot: usize, condition: Option<Condition>) {
+        self.0.set_condition(robot, condition.as_ref());
+    }
+
+    pub(crate) fn set_force(&mut self, robot: usize, force: [f32; 3]) {
+        self.0.set_force(robot, force);
     }
 
     pub(crate) fn advance(&mut self) {

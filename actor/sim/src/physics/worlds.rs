@@ -1,11 +1,13 @@
 //! rapier's side of the seam: a world per robot, one after another.
 
 use super::Exertion;
-use crate::actuator::Gains;
+use crate::actuator::{Gains, Law};
 use crate::engine::Engine;
 use crate::ground::Ground;
 use crate::model::Variation;
+use crate::time::SUBSTEPS;
 use crate::world::World;
+use dynamics::Condition;
 use g1::{DEFAULT_POSE, JOINTS, RobotState};
 use nalgebra::Vector3;
 
@@ -16,7 +18,9 @@ pub(crate) struct Worlds {
     /// A world that was never stepped.
     template: World,
     worlds: Vec<World>,
-    targets: Vec<[f32; JOINTS]>,
+    /// Of each physics step.
+    targets: Vec<[[f32; JOINTS]; SUBSTEPS]>,
+    conditions: Vec<Option<Box<Condition>>>,
     exertions: Vec<Exertion>,
 }
 
@@ -36,7 +40,8 @@ impl Worlds {
             gains: gains.clone(),
             worlds: vec![template.clone(); count],
             template,
-            targets: vec![DEFAULT_POSE; count],
+            targets: vec![[DEFAULT_POSE; SUBSTEPS]; count],
+            conditions: vec![None; count],
             exertions: vec![Exertion::default(); count],
         }
     }
@@ -57,13 +62,34 @@ impl Worlds {
     }
 
     pub(crate) fn set_targets(&mut self, robot: usize, targets: &[f32; JOINTS]) {
+        self.targets[robot] = [*targets; SUBSTEPS];
+    }
+
+    pub(crate) fn set_targets_by_step(
+        &mut self,
+        robot: usize,
+        targets: &[[f32; JOINTS]; SUBSTEPS],
+    ) {
         self.targets[robot] = *targets;
+    }
+
+    pub(crate) fn set_condition(&mut self, robot: usize, condition: Option<Condition>) {
+        self.conditions[robot] = condition.map(Box::new);
+    }
+
+    pub(crate) fn set_force(&mut self, robot: usize, force: [f32; 3]) {
+        self.worlds[robot].set_force(force);
     }
 
     pub(crate) fn advance(&mut self) {
         let robots = self.worlds.iter_mut().zip(&self.targets);
-        for ((world, targets), exertion) in robots.zip(&mut self.exertions) {
-            *exertion = world.control_step(&mut self.engine, &self.gains, targets);
+        let conditions = self.conditions.iter().zip(&mut self.exertions);
+        for ((world, targets), (condition, exertion)) in robots.zip(conditions) {
+            let law = match condition {
+                None => Law::Table(&self.gains),
+                Some(condition) => Law::Own(condition),
+            };
+            *exertion = world.control_step_by(&mut self.engine, law, targets);
         }
     }
 

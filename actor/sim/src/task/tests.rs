@@ -3,7 +3,6 @@
 mod section;
 
 use super::*;
-use crate::feet::Footing;
 use crate::gate::effort::Effort;
 use crate::moment::{uprightness, velocity_error};
 use crate::reward::track::Track;
@@ -29,7 +28,7 @@ fn walking() -> RobotState {
 }
 
 fn pay(task: &TaskConfig, command: [f32; 3], state: &RobotState, work: f32) -> f32 {
-    task.pay(&Moment::new(&command, state, work, &Footing::default()))
+    task.pay(&Moment::new(&command, state, work))
 }
 
 fn track(kernel: f32, yaw_rate: f32) -> Track {
@@ -167,10 +166,9 @@ fn terms_are_told_by_name_and_only_those_that_exist() {
     let task: TaskConfig =
         read("[reward.track_wide]\nkernel = 1.0\n[gate.effort]\nweight = 0.05\n");
     let mut sums = Sums::default();
-    let feet = Footing::default();
     for speed in [1.0, 2.0] {
         let command = [speed, 0.0, 0.5];
-        task.pay_and_tell(&Moment::new(&command, &walking(), 2.0, &feet), &mut sums);
+        task.pay_and_tell(&Moment::new(&command, &walking(), 2.0), &mut sums);
     }
     let told = sums.take(&NAMES);
     let names: Vec<&str> = told.iter().map(|(name, _)| *name).collect();

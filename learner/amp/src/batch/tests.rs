@@ -94,7 +94,7 @@ fn the_last_robots_of_every_rollout_explore_calmly() {
     assert!(explored(&batch).is_empty());
     batch.calm_share = 0.25;
     // One of four, and half a robot rounds up to one of two.
-    let [all, half] = [1.0, vocabulary::CALM];
+    let [all, half] = [1.0, CALM];
     let step = [all, all, all, half];
     assert_eq!(explored(&batch), [&step[..], &step, &[all, half]].concat());
 }

@@ -1,9 +1,9 @@
 //! Every term by hand, and that none lies about its reflection.
 
 use super::*;
-use crate::Truth;
 use crate::table::Table;
 use crate::term::Kind;
+use crate::{Lot, Truth};
 use g1::mirror::{mirror_action, mirror_command, mirror_state};
 use g1::{DEFAULT_POSE, JOINTS, RobotState};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -25,6 +25,24 @@ const TRUTH: Truth = Truth {
     com_offset: [0.01, 0.02, 0.03],
     foot_forces: [200.0, 5.0],
     push: [0.3, 0.4, 0.0],
+    lot: LOT,
+};
+
+/// Motors of the left leg 10 % to 15 % too stiff.
+const LOT: Lot = {
+    let mut stiffness = [1.0; JOINTS];
+    let mut i = 0;
+    while i < 6 {
+        stiffness[i] = 1.1 + 0.01 * i as f32;
+        i += 1;
+    }
+    Lot {
+        delays: [0.02, 0.005],
+        stiffness,
+        down: [0.0, -0.6, -0.8],
+        force: [30.0, 40.0, 0.0],
+        ..Lot::NOMINAL
+    }
 };
 
 fn seen(term: &Term, scene: &Scene<'_>) -> Vec<f32> {
@@ -53,6 +71,18 @@ fn what_a_mirrored_robot_sees_is_the_reflection_of_what_is_seen() {
             com_offset: turned(TRUTH.com_offset),
             foot_forces: [5.0, 200.0],
             push: turned(TRUTH.push),
+            lot: Lot {
+                stiffness: std::array::from_fn(|i| {
+                    if (6..12).contains(&i) {
+                        LOT.stiffness[i - 6]
+                    } else {
+                        1.0
+                    }
+                }),
+                down: turned(LOT.down),
+                force: turned(LOT.force),
+                ..LOT
+            },
             ..TRUTH
         },
     };
@@ -112,6 +142,17 @@ fn what_only_a_simulation_knows_is_told_by_hand() {
         push[0].abs() < 1e-6 && (push[1] + 0.5).abs() < 1e-6,
         "{push:?}"
     );
+    assert_eq!(told("delays"), [0.02, 0.005]);
+    assert_eq!(told("stiffness")[2..7], [1.12, 1.13, 1.14, 1.15, 1.0]);
+    assert_eq!(told("damping"), [1.0; JOINTS]);
+    // Uphill is at the world's left, ahead of who faces there; so down leans back.
+    let near = |name: &str, numbers: [f32; 3]| {
+        let told = told(name);
+        let off = told.iter().zip(numbers).map(|(a, b)| (a - b).abs());
+        assert!(off.fold(0.0, f32::max) < 1e-5, "{name}: {told:?}");
+    };
+    near("slope", [-0.6, 0.0, -0.8]);
+    near("force", [40.0, -30.0, 0.0]);
 }
 
 #[test]

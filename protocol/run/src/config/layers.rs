@@ -1,8 +1,8 @@
 //! Presets on presets: each says what it lies on, what it takes away from that, and what it sets.
 //!
 //! ```toml
-//! on = "agile"                      # a preset that comes with the program, or a file beside this one
-//! unset = ["task.gate.effort"]      # what `agile` sets and this does not: back to the default
+//! on = "g1"                         # a preset that comes with the program, or a file beside this one
+//! unset = ["randomization.impulse"] # what `g1` sets and this does not: back to the default
 //! [ppo]
 //! epochs = 3
 //! ```
@@ -93,6 +93,17 @@ pub fn lay(
     for layer in layers.into_iter().rev() {
         layer.apply(config, &default, &mut notices)?;
     }
+    Ok(notices)
+}
+
+/// Lays a preset's own part over `config`, whatever it says that it lies on; what is to be said of it.
+pub fn lay_alone(
+    config: &mut Config,
+    source: &Source,
+    default: impl Fn(&str) -> Option<Value>,
+) -> Result<Vec<String>, ConfigError> {
+    let mut notices = Vec::new();
+    Layer::parse(source)?.apply(config, default, &mut notices)?;
     Ok(notices)
 }
 

@@ -1,7 +1,7 @@
 //! Keys that are spelt otherwise now: an older file is refused with the new spelling.
 
 /// Section and key as they were, and how the same is said now.
-const MOVED: [(&str, &str, &str); 31] = [
+const MOVED: [(&str, &str, &str); 30] = [
     ("motion", "stratify", "motion.draw = \"speeds\""),
     ("task", "physics", "fleet.physics = \"batched\""),
     ("task", "kernel", "task.reward.track.kernel = 2.0"),
@@ -12,11 +12,6 @@ const MOVED: [(&str, &str, &str); 31] = [
         "task.reward.track.yaw_rate = 0.5",
     ),
     ("task", "effort_weight", "task.gate.effort.weight = 0.02"),
-    (
-        "task",
-        "single_stance",
-        "task.gate.single_stance = { share = 0.5 }",
-    ),
     ("task", "fall_height", "task.termination.fall.height = 0.5"),
     (
         "task",

@@ -91,7 +91,7 @@ fn nearest_points_are_those_of_geometry() {
             *q += random.random_range(-0.8..0.8_f32);
         }
         block.set_state(0, &state);
-        group.load((), &block, &[Row::default(); JOINTS], 0);
+        group.load((), &block, &[Row::default(); JOINTS], None, 0);
         walk.run((), &tree, &group);
         let bodies = kinematics::forward_state(&state);
         for pair in 0..PAIRS {
@@ -123,7 +123,7 @@ fn what_is_passed_over_is_at_least_the_margin_apart() {
             *q += random.random_range(-0.8..0.8_f32);
         }
         block.set_state(0, &state);
-        group.load((), &block, &[Row::default(); JOINTS], 0);
+        group.load((), &block, &[Row::default(); JOINTS], None, 0);
         walk.run((), &tree, &group);
         let bodies = kinematics::forward_state(&state);
         let reach = across(&touch, &walk);
@@ -188,7 +188,7 @@ fn an_impulse_of_one_pair_leaves_no_momentum_of_its_own() {
     let tree = contact::tree::<f64>(true);
     let (mut block, mut group) = (Block::<f64>::new(), Group::<f64>::new(()));
     block.set_state(0, &state);
-    group.load((), &block, &[Row::default(); JOINTS], 0);
+    group.load((), &block, &[Row::default(); JOINTS], None, 0);
     let mut walk = Walk::new(());
     walk.run((), &tree, &group);
     // With a mass matrix of one, ζ is the generalised force itself.

@@ -3,7 +3,6 @@
 use super::super::*;
 use super::{read, track};
 use crate::gate::effort::Effort;
-use crate::gate::single_stance::SingleStance;
 use crate::kind::KindsConfig;
 use crate::termination::stray::StrayConfig;
 
@@ -51,10 +50,6 @@ fn what_cannot_be_used_is_told_by_its_path() {
             "reward",
         ),
         ("[gate.effort]\nweight = nan", "gate.effort.weight"),
-        (
-            "[gate.single_stance]\nshare = 1.5",
-            "gate.single_stance.share",
-        ),
         (
             "[command]\nforward = { from = [0, 1], to = [1, 0], samples = [0, 1] }",
             "command.forward.to",
@@ -177,7 +172,6 @@ fn whatever_may_move_does() {
         },
         gate: GateConfig {
             effort: Some(Effort::default()),
-            single_stance: Some(SingleStance::default()),
             ..GateConfig::default()
         },
         termination: TerminationConfig {
@@ -235,7 +229,6 @@ fn whatever_may_move_does() {
         "reward.track.kernel",
         "reward.track_wide.weight",
         "gate.effort.weight",
-        "gate.single_stance.share",
         "termination.stray.share",
         "command.forward",
         "command.lateral",
