@@ -12,6 +12,7 @@ use ::study::outlook::Progress;
 use anyhow::{Context, Result};
 use run::metrics::{self, Tail};
 use rustix::process::Signal;
+use rustix::thread::CpuSet;
 use supervise::{Stop, programs};
 use terminal::console::Console;
 use terminal::figures::{Figures, Pace};
@@ -20,7 +21,9 @@ use tokio::time::{MissedTickBehavior, interval};
 
 use super::folder::StudyFolder;
 use super::group::{self, Standing};
+use super::judgement::Judging;
 use super::plan::Planned;
+use super::records;
 
 /// Between two looks.
 const LOOK: Duration = Duration::from_millis(100);
@@ -28,10 +31,15 @@ const LOOK: Duration = Duration::from_millis(100);
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Runs what is not done yet.
-pub(super) fn conduct(folder: &StudyFolder, file: &StudyFile, planned: Vec<Planned>) -> Result<()> {
+pub(super) fn conduct(
+    folder: &StudyFolder,
+    file: &StudyFile,
+    planned: Vec<Planned>,
+    judging: Option<&Judging>,
+) -> Result<()> {
     programs::runtime()?.block_on(async {
         let mut stop = Stop::install()?;
-        let mut conductor = Conductor::new(folder, file, planned)?;
+        let mut conductor = Conductor::new(folder, file, planned, judging)?;
         conductor.until_done(&mut stop).await?;
         conductor.close()
     })
@@ -40,6 +48,8 @@ pub(super) fn conduct(folder: &StudyFolder, file: &StudyFile, planned: Vec<Plann
 /// What runs now.
 struct Job {
     run: usize,
+    /// Whose cores it has, of those that are divided among the groups.
+    place: usize,
     child: Child,
     task: Task,
 }
@@ -57,13 +67,15 @@ enum Task {
 
 struct Conductor<'a> {
     folder: &'a StudyFolder,
-    file: &'a StudyFile,
+    judging: Option<&'a Judging>,
     planned: Vec<Planned>,
     progress: Vec<Progress>,
     queue: VecDeque<usize>,
     jobs: Vec<Job>,
     failures: Vec<String>,
     parallel: usize,
+    /// The cores of each place; empty where groups are not kept to cores.
+    cores: Vec<CpuSet>,
     console: Console,
     stopping: bool,
     /// Since when the first of the queue waits for an earlier group to end.
@@ -71,24 +83,31 @@ struct Conductor<'a> {
 }
 
 impl<'a> Conductor<'a> {
-    fn new(folder: &'a StudyFolder, file: &'a StudyFile, planned: Vec<Planned>) -> Result<Self> {
+    fn new(
+        folder: &'a StudyFolder,
+        file: &StudyFile,
+        planned: Vec<Planned>,
+        judging: Option<&'a Judging>,
+    ) -> Result<Self> {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let widest = planned.iter().map(|run| run.cores).max().unwrap_or(1);
         let mut progress = Vec::new();
         for run in &planned {
-            progress.push(so_far(run, folder)?);
+            progress.push(so_far(run, folder, judging)?);
         }
+        let parallel = match file.jobs {
+            0 => (cores / widest.max(1)).max(1),
+            given => given,
+        };
         Ok(Self {
             folder,
-            file,
+            judging,
             queue: (0..planned.len()).collect(),
             progress,
             jobs: Vec::new(),
             failures: Vec::new(),
-            parallel: match file.parallel {
-                0 => (cores / widest.max(1)).max(1),
-                given => given,
-            },
+            cores: group::divided(parallel, widest)?,
+            parallel,
             planned,
             console: Console::on_stderr(),
             stopping: false,
@@ -175,6 +194,13 @@ impl<'a> Conductor<'a> {
         let Some(run) = self.queue.front().copied() else {
             return Ok(false);
         };
+        let name = &self.planned[run].name;
+        if records::stands(self.folder, name, self.judging)? {
+            self.queue.pop_front();
+            self.progress[run].done = self.progress[run].of;
+            self.folder.note(name, None)?;
+            return Ok(true);
+        }
         if let Some(pid) = self.held(run)? {
             let since = *self.waiting.get_or_insert_with(Instant::now);
             if since.elapsed() < PATIENCE {
@@ -189,11 +215,13 @@ impl<'a> Conductor<'a> {
         self.waiting = None;
         let planned = &self.planned[run];
         let standing = Standing::of(planned, self.folder)?;
+        let taken: Vec<usize> = self.jobs.iter().map(|job| job.place).collect();
+        let place = (0..).find(|place| !taken.contains(place)).unwrap_or(0);
         if standing == Standing::Done {
-            self.finished(run)?;
+            self.finished(run, place)?;
             return Ok(true);
         }
-        match group::train(planned, self.folder, standing) {
+        match group::train(planned, self.folder, standing, self.cores.get(place)) {
             Ok(child) => {
                 let path = self.folder.runs().join(&planned.name).join("metrics.jsonl");
                 let tail = if standing == Standing::Begun {
@@ -203,7 +231,12 @@ impl<'a> Conductor<'a> {
                 };
                 let pace = Box::default();
                 let task = Task::Training { tail, pace };
-                self.jobs.push(Job { run, child, task });
+                self.jobs.push(Job {
+                    run,
+                    place,
+                    child,
+                    task,
+                });
             }
             Err(error) => self.fail(run, &format!("{error:#}"))?,
         }
@@ -220,12 +253,14 @@ impl<'a> Conductor<'a> {
 }
 
 /// How far a run has come by what it has written.
-fn so_far(planned: &Planned, folder: &StudyFolder) -> Result<Progress> {
+fn so_far(planned: &Planned, folder: &StudyFolder, judging: Option<&Judging>) -> Result<Progress> {
     let mut progress = Progress {
         of: planned.target,
         ..Progress::default()
     };
-    if let Some(run) = folder.run(&planned.name)?
+    if records::stands(folder, &planned.name, judging)? {
+        progress.done = planned.target;
+    } else if let Some(run) = folder.run(&planned.name)?
         && let Some(figures) = metrics::newest(&run.metrics_path())?
             .as_ref()
             .and_then(Figures::read)

@@ -2,11 +2,12 @@
 //!
 //! | entry | what |
 //! | --- | --- |
-//! | `study.toml` | the study as it was last asked for, options included |
+//! | `study.toml` | the study as it was last asked for, options included, with all its methods |
 //! | `runs.json` | every run that was asked for so far |
 //! | `origin.json` | the command and the machine |
 //! | `configs/<run>.toml` | the configuration that each run is started with |
 //! | `runs/<run>/` | the runs, like any other |
+//! | `records/<run>.json` | what is kept of each finished run: all that a report needs |
 //! | `logs/<run>.log` | what `ampco train` and `ampco evaluate` said |
 //! | `failed/<run>.txt` | why a run failed; gone once it has succeeded |
 //! | `overhead.json` | what `ampco bench scheduler` found at the end |
@@ -23,6 +24,7 @@ use terminal::failure::usage;
 use terminal::file;
 
 use super::plan::Planned;
+use super::records::{self, Records};
 
 /// Name of the file that lists the runs.
 const RUNS: &str = "runs.json";
@@ -36,7 +38,7 @@ pub(super) struct StudyFolder {
 impl StudyFolder {
     /// Makes it with its inner folders; what is there stays.
     pub(super) fn create(path: &Path) -> Result<Self> {
-        for inner in ["configs", "runs", "logs", "failed"] {
+        for inner in ["configs", "runs", "logs", "failed", records::FOLDER] {
             let inner = path.join(inner);
             std::fs::create_dir_all(&inner)
                 .with_context(|| format!("making the folder {}", inner.display()))?;
@@ -123,6 +125,10 @@ impl StudyFolder {
         }
         let bytes = std::fs::read(&path).with_context(|| format!("reading {}", path.display()))?;
         Ok(Some(parse_json(&bytes, &path)?))
+    }
+
+    pub(super) fn records(&self) -> Records {
+        Records::new(self.path.join(records::FOLDER))
     }
 
     pub(super) fn runs(&self) -> PathBuf {

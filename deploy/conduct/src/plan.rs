@@ -10,11 +10,14 @@ use terminal::failure::usage;
 use wording::count;
 
 use super::folder::StudyFolder;
+use super::records;
 
 /// A run that is to be made.
 #[derive(Debug)]
 pub(super) struct Planned {
     pub(super) name: String,
+    /// Which run of the study it is.
+    pub(super) cell: Cell,
     /// Every value, defaults included.
     pub(super) config: Config,
     /// Iterations.
@@ -47,10 +50,17 @@ fn plan_cells(
 }
 
 fn planned(study: &StudyFile, cell: &Cell, beside: &Path, origin: &str) -> Result<Planned> {
-    let given = &cell.entry.preset;
-    let own = beside.join(given);
-    let own = own.is_file().then(|| own.display().to_string());
-    let preset = presets::find(own.as_deref().unwrap_or(given))?;
+    // A file beside the study, or a preset of ours.
+    let found = |given: &str| {
+        let own = beside.join(given);
+        let own = own.is_file().then(|| own.display().to_string());
+        own.unwrap_or_else(|| given.to_owned())
+    };
+    let given = found(&cell.entry.preset);
+    let preset = match &study.on {
+        Some(base) => presets::find_on(&given, &found(base))?,
+        None => presets::find(&given)?,
+    };
     let mut config = preset.config;
     config.merge(Config::parse(&toml::to_string(&study.overrides)?, origin)?);
     for (key, value) in &cell.entry.values {
@@ -70,6 +80,7 @@ fn planned(study: &StudyFile, cell: &Cell, beside: &Path, origin: &str) -> Resul
         .and_then(|threads| threads.as_integer());
     Ok(Planned {
         name: cell.run_name(),
+        cell: cell.clone(),
         target,
         rows,
         cores: resolved
@@ -91,12 +102,14 @@ pub(super) fn together(
 ) -> Result<Vec<Cell>> {
     for run in planned {
         check_unchanged(run, folder)?;
+        records::check(run, &folder.records())?;
     }
     let mut earlier = Vec::new();
     for cell in folder.cells()? {
         let now = planned.iter().any(|run| run.name == cell.run_name());
-        // Whoever removes a run's folder takes the run out of the study.
-        if now || folder.run(&cell.run_name())?.is_some() {
+        // Whoever removes a run's folder and its record takes the run out of the study.
+        let name = cell.run_name();
+        if now || folder.run(&name)?.is_some() || folder.records().path(&name).is_file() {
             earlier.push((cell, now));
         }
     }
@@ -107,6 +120,7 @@ pub(super) fn together(
     let not_now: Vec<Cell> = not_now.collect();
     for run in &plan_cells(&not_now, file, beside, origin)? {
         check_unchanged(run, folder)?;
+        records::check(run, &folder.records())?;
     }
     let earlier: Vec<Cell> = earlier.into_iter().map(|(cell, _)| cell).collect();
     Ok(matrix::together(&earlier, &file.cells()))

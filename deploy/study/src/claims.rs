@@ -3,7 +3,8 @@
 //! A claim that one method is better is *supported* where the exact test finds it at the level of 0.05, *contradicted*
 //! where the test finds the opposite. A claim that two are alike is contradicted where the first is found worse. All
 //! else is *undecided*: with fewer than six common seeds no outcome of the test can count, and runs whose metric was
-//! still moving, or that had not reached the phase that the claim is about, are too short.
+//! still moving, or that had not reached the phase that the claim is about, are too short. Where a claim compares with
+//! several, that one of them contradicts it counts by Holm's corrected p.
 
 mod finding;
 mod list;

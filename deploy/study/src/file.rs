@@ -12,6 +12,10 @@ pub struct StudyFile {
     /// What a reader of the report should know of it.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub note: String,
+    /// The preset that every method lies on in place of its own base: of a method its own differences are taken, of this
+    /// one all but its method.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub on: Option<String>,
     /// Presets: names of ours or files beside this one.
     #[serde(default)]
     pub methods: Vec<String>,
@@ -25,13 +29,13 @@ pub struct StudyFile {
     pub samples: Option<u64>,
     /// Process groups at a time; 0 = as many as the cores allow.
     #[serde(default = "one")]
-    pub parallel: usize,
+    pub jobs: usize,
     /// How finished runs are judged without exploration noise; none are if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub evaluate: Option<Evaluation>,
-    /// One method with several values of some keys, every combination.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sweep: Option<Sweep>,
+    /// Methods with several values of some keys, every combination within each sweep.
+    #[serde(default, rename = "sweep", skip_serializing_if = "Vec::is_empty")]
+    pub sweeps: Vec<Sweep>,
     /// Sections of a configuration that every run has on top of its preset.
     #[serde(default, rename = "override", skip_serializing_if = "Table::is_empty")]
     pub overrides: Table,
@@ -49,6 +53,10 @@ pub struct Evaluation {
     /// Length of an episode, s.
     #[serde(default = "seconds")]
     pub seconds: f64,
+    /// Whose discriminator judges style, of every run the same: a shipped policy or a checkpoint, from the folder of the
+    /// study file. Each run's own does if absent, and no two runs can then be compared by it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub judge: Option<String>,
 }
 
 /// One method with several values of some keys.
@@ -122,8 +130,11 @@ impl StudyFile {
             let problem = problem.to_owned();
             Err(FileError::Value { field, problem })
         };
-        if self.methods.is_empty() && self.sweep.is_none() {
-            return refuse("methods", "none is given; name presets, or give a [sweep]");
+        if self.methods.is_empty() && self.sweeps.is_empty() {
+            return refuse(
+                "methods",
+                "none is given; name presets, or give a [[sweep]]",
+            );
         }
         if self.seeds.is_empty() {
             return refuse(
@@ -162,7 +173,7 @@ impl StudyFile {
                 return refuse("evaluate.seconds", "use more than 0");
             }
         }
-        if let Some(sweep) = &self.sweep {
+        for sweep in &self.sweeps {
             let list = |value: &Value| value.as_array().is_some_and(|list| !list.is_empty());
             if sweep.values.is_empty() || !sweep.values.values().all(list) {
                 return refuse(
@@ -170,6 +181,14 @@ impl StudyFile {
                     "each key takes a list, as in \"scheduler.alpha\" = [0.9, 0.95]",
                 );
             }
+        }
+        let entries = self.entries();
+        let names: Vec<&str> = entries.iter().map(|entry| entry.name.as_str()).collect();
+        if has_twice(&names) {
+            return refuse(
+                "methods",
+                "two of them, or of the combinations of [[sweep]], have the same name; a run is made once",
+            );
         }
         Ok(())
     }
@@ -202,7 +221,7 @@ mod tests {
     fn a_file_comes_back_as_it_was() {
         let file = StudyFile::parse(GOOD).unwrap();
         assert_eq!(file.budget(), Budget::Samples(1000));
-        assert_eq!(file.parallel, 1);
+        assert_eq!(file.jobs, 1);
         assert_eq!(file.overrides["fleet"]["physics"].as_str(), Some("batched"));
         assert_eq!(StudyFile::parse(&file.to_toml()).unwrap(), file);
     }
@@ -241,7 +260,13 @@ mod tests {
         assert!(refused("samples", "iterations = 5\nsamples").starts_with("samples: iterations"));
         assert!(refused("seeds", "sedes").contains("sedes"));
         assert!(refused("[override", "[evaluate]\ncommands = []\n[override").contains("evaluate"));
-        let sweep = "[sweep]\npreset = 'ampco'\nvalues = { x = 1 }\n[override";
+        let sweep = "[[sweep]]\npreset = 'ampco'\nvalues = { x = 1 }\n[override";
         assert!(refused("[override", sweep).contains("sweep.values"));
+        let twice = "[[sweep]]\npreset = 'ampco'\nvalues = { x = [1] }\n[[sweep]]\npreset = 'ampco'\n\
+                     values = { x = [2, 1] }\n[override";
+        assert!(refused("[override", twice).contains("same name"));
+        assert!(
+            refused("['ampco', 'amp-0.5']", "['ampco', 'mine/ampco.toml']").contains("same name")
+        );
     }
 }

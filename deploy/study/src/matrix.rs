@@ -3,10 +3,11 @@
 use serde::{Deserialize, Serialize};
 use toml::Value;
 
-use crate::file::{Budget, StudyFile};
+use crate::file::{Budget, StudyFile, Sweep};
 
 /// A row of the tables: a preset, perhaps with some values changed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Entry {
     /// Its name in runs and tables.
     pub name: String,
@@ -49,6 +50,21 @@ pub fn together(earlier: &[Cell], now: &[Cell]) -> Vec<Cell> {
     cells
 }
 
+/// Runs in an order that does not depend on who made them when: by seed, then as the rows of a study file, then by name.
+pub fn ordered(mut cells: Vec<Cell>, rows: &[Entry]) -> Vec<Cell> {
+    let place = |cell: &Cell| {
+        let row = rows.iter().position(|row| row.name == cell.entry.name);
+        row.unwrap_or(rows.len())
+    };
+    cells.sort_by(|a, b| {
+        let key = |cell: &Cell| (cell.seed, place(cell));
+        key(a)
+            .cmp(&key(b))
+            .then_with(|| a.entry.name.cmp(&b.entry.name))
+    });
+    cells
+}
+
 /// The rows of the tables that some runs fill, each once, in the order in which they first come.
 pub fn entries(cells: &[Cell]) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
@@ -84,7 +100,7 @@ impl StudyFile {
             preset: method.clone(),
             values: Vec::new(),
         });
-        methods.chain(self.swept()).collect()
+        methods.chain(self.sweeps.iter().flat_map(swept)).collect()
     }
 
     /// All runs, a seed of every entry before the next seed: a study that is cut short then has whole seeds.
@@ -101,32 +117,30 @@ impl StudyFile {
             .flat_map(|seed| entries.iter().map(with(*seed)))
             .collect()
     }
+}
 
-    fn swept(&self) -> Vec<Entry> {
-        let Some(sweep) = &self.sweep else {
-            return Vec::new();
-        };
-        let mut entries = vec![Entry {
-            name: stem(&sweep.preset),
-            preset: sweep.preset.clone(),
-            values: Vec::new(),
-        }];
-        for (key, values) in &sweep.values {
-            let values = values.as_array().map_or(&[][..], Vec::as_slice);
-            let short = key.rsplit('.').next().unwrap_or(key);
-            entries = entries
-                .iter()
-                .flat_map(|entry| values.iter().map(move |value| (entry, value)))
-                .map(|(entry, value)| {
-                    let mut entry = entry.clone();
-                    entry.name = plain(&format!("{}-{short}-{}", entry.name, words(value)));
-                    entry.values.push((key.clone(), value.clone()));
-                    entry
-                })
-                .collect();
-        }
-        entries
+/// Every combination of a sweep.
+fn swept(sweep: &Sweep) -> Vec<Entry> {
+    let mut entries = vec![Entry {
+        name: stem(&sweep.preset),
+        preset: sweep.preset.clone(),
+        values: Vec::new(),
+    }];
+    for (key, values) in &sweep.values {
+        let values = values.as_array().map_or(&[][..], Vec::as_slice);
+        let short = key.rsplit('.').next().unwrap_or(key);
+        entries = entries
+            .iter()
+            .flat_map(|entry| values.iter().map(move |value| (entry, value)))
+            .map(|(entry, value)| {
+                let mut entry = entry.clone();
+                entry.name = plain(&format!("{}-{short}-{}", entry.name, words(value)));
+                entry.values.push((key.clone(), value.clone()));
+                entry
+            })
+            .collect();
     }
+    entries
 }
 
 /// A preset's name in a run's: without folders and ending.
@@ -198,7 +212,7 @@ mod tests {
         assert_eq!(seeds(&all), [1, 2, 3]);
         assert_eq!(together(&all, &all), all);
         // Through JSON and back, a sweep's values included.
-        let swept = "methods = []\nseeds = [1]\n[sweep]\npreset = 'ampco'\n[sweep.values]\n\
+        let swept = "methods = []\nseeds = [1]\n[[sweep]]\npreset = 'ampco'\n[sweep.values]\n\
                      'scheduler.alpha' = [0.9, 1.0]\n'scheduler.window' = [4]\n'fleet.physics' = ['batched']";
         let swept = cells(swept);
         let json = serde_json::to_string(&swept).unwrap();
@@ -206,8 +220,32 @@ mod tests {
     }
 
     #[test]
+    fn the_order_of_runs_is_that_of_the_file_whoever_made_them() {
+        let text = "title = 't'\niterations = 5\nmethods = ['b', 'a']\nseeds = [2, 1]";
+        let file = StudyFile::parse(text).unwrap();
+        let mut cells = file.cells();
+        cells.push(Cell {
+            seed: 1,
+            entry: Entry {
+                name: "0".into(),
+                ..cells[0].entry.clone()
+            },
+        });
+        let names = |cells: Vec<Cell>| -> Vec<String> {
+            ordered(cells, &file.entries())
+                .iter()
+                .map(Cell::run_name)
+                .collect()
+        };
+        let expected = ["b-seed1", "a-seed1", "0-seed1", "b-seed2", "a-seed2"];
+        assert_eq!(names(cells.clone()), expected);
+        cells.reverse();
+        assert_eq!(names(cells), expected);
+    }
+
+    #[test]
     fn a_sweep_takes_every_combination() {
-        let text = "seeds = [3]\n[sweep]\npreset = 'ampco'\n[sweep.values]\n\
+        let text = "seeds = [3]\n[[sweep]]\npreset = 'ampco'\n[sweep.values]\n\
                     'scheduler.alpha' = [0.9, 0.99]\n'scheduler.arm' = ['after_rise', 'window_full']";
         let names = names(text);
         assert_eq!(names.len(), 4);

@@ -12,7 +12,7 @@
 //! - *Steps* of the moving average are iterations, as they are what the paper counts and plots. The run has converged
 //!   at the first iteration after which the average never leaves the band again.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::metric::Metric;
 
@@ -26,7 +26,7 @@ const BAND: f64 = 0.1;
 /// What the study reads of a line of `metrics.jsonl`; a refused iteration has less.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default)]
-pub struct Record {
+pub struct Line {
     /// Counted from 1.
     pub iteration: u64,
     /// Transitions so far.
@@ -39,6 +39,8 @@ pub struct Record {
     pub energy_j: Option<f64>,
     /// r̄ˢ.
     pub style_mean: Option<f64>,
+    /// Mean length of the episodes that ended, as a share of the longest possible.
+    pub episode_share: Option<f64>,
     /// Iteration whose report brought Phase II.
     pub switched_at: Option<u64>,
     /// μ lower of Eq. 13.
@@ -71,7 +73,7 @@ pub struct Learning {
     pub weighting: Option<f64>,
 }
 
-impl Record {
+impl Line {
     /// A metric's value in this iteration, if it has one.
     pub fn value(&self, metric: Metric) -> Option<f64> {
         let value = match metric {
@@ -84,7 +86,8 @@ impl Record {
 }
 
 /// One metric of one run.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Figures {
     /// Greatest window after the first 1,000 timesteps; none if the run holds no second window.
     pub peak: Option<f64>,
@@ -95,31 +98,40 @@ pub struct Figures {
 }
 
 /// All metrics of one run.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Measured {
     /// Iterations of a window.
     pub window: usize,
-    figures: [Figures; 3],
+    rmse: Figures,
+    energy_j: Figures,
+    style: Figures,
 }
 
 impl Measured {
     /// Of a run with `steps` control steps per iteration; `None` if it is shorter than a window or a window is empty.
-    pub fn of(records: &[Record], steps: u64) -> Option<Self> {
+    pub fn of(records: &[Line], steps: u64) -> Option<Self> {
         let window = usize::try_from(WINDOW_STEPS.div_ceil(steps.max(1))).ok()?;
         let [rmse, energy, style] = Metric::ALL.map(|metric| figures(records, metric, window));
         Some(Self {
             window,
-            figures: [rmse?, energy?, style?],
+            rmse: rmse?,
+            energy_j: energy?,
+            style: style?,
         })
     }
 
     /// One of the metrics.
     pub fn figures(&self, metric: Metric) -> &Figures {
-        &self.figures[metric as usize]
+        match metric {
+            Metric::Rmse => &self.rmse,
+            Metric::Energy => &self.energy_j,
+            Metric::Style => &self.style,
+        }
     }
 }
 
-fn figures(records: &[Record], metric: Metric, window: usize) -> Option<Figures> {
+fn figures(records: &[Line], metric: Metric, window: usize) -> Option<Figures> {
     let values: Vec<Option<f64>> = records.iter().map(|record| record.value(metric)).collect();
     let last = over_window(values.get(values.len().checked_sub(window)?..)?, metric)?;
     let later = values.get(window..).unwrap_or_default();
@@ -165,17 +177,17 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
 mod tests {
     use super::*;
 
-    fn record(iteration: u64, value: f64) -> Record {
-        Record {
+    fn record(iteration: u64, value: f64) -> Line {
+        Line {
             iteration,
             rmse: Some(value),
             energy_j: Some(1000.0 * value),
             style_mean: Some(value / 10.0),
-            ..Record::default()
+            ..Line::default()
         }
     }
 
-    fn run(values: &[f64]) -> Vec<Record> {
+    fn run(values: &[f64]) -> Vec<Line> {
         (1..)
             .zip(values)
             .map(|(i, value)| record(i, *value))
@@ -210,9 +222,9 @@ mod tests {
     #[test]
     fn a_refused_iteration_counts_for_nothing() {
         let mut records = run(&[1.0, 1.0, 3.0, 5.0]);
-        records[3] = Record {
+        records[3] = Line {
             iteration: 4,
-            ..Record::default()
+            ..Line::default()
         };
         let measured = Measured::of(&records, 500).unwrap();
         assert_eq!(measured.figures(Metric::Energy).last, 3000.0);
@@ -238,7 +250,7 @@ mod tests {
             "iteration": 7, "samples": 70, "rmse": 0.5, "energy_j": null, "gait": "walk",
             "timing": { "iteration_seconds": 0.5, "decision_seconds": 1e-6, "learning": { "weighting": 1e-5 } },
         });
-        let record: Record = serde_json::from_value(line).unwrap();
+        let record: Line = serde_json::from_value(line).unwrap();
         assert_eq!(record.value(Metric::Rmse), Some(0.5));
         assert_eq!(record.value(Metric::Energy), None);
         assert_eq!(record.timing.learning.weighting, Some(1e-5));

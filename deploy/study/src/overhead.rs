@@ -1,12 +1,12 @@
 //! What the scheduler costs (II-B), in runs and alone.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
-use crate::measure::Record;
+use crate::measure::Line;
 use crate::statistics::median;
 
 /// The last line of `ampco bench scheduler`, as far as it is told here.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Benchmark {
     /// A decision with both windows full, µs.
     pub decision_us: f64,
@@ -20,7 +20,8 @@ pub struct Benchmark {
 
 /// Medians over a run's iterations, and shares of them. Times are by the wall clock: a decision in whose midst another
 /// program was given the core takes milliseconds, and sums would tell of that program.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Overhead {
     /// Iterations that told.
     pub iterations: usize,
@@ -40,7 +41,7 @@ pub struct Overhead {
 
 impl Overhead {
     /// Of a run; `None` if no line of its metrics tells.
-    pub fn of(records: &[Record]) -> Option<Self> {
+    pub fn of(records: &[Line]) -> Option<Self> {
         let told: Vec<(f64, f64, f64)> = records
             .iter()
             .filter_map(|record| {
@@ -84,8 +85,8 @@ mod tests {
     use super::*;
     use crate::measure::{Learning, Timing};
 
-    fn record(cycle: f64, decision: Option<f64>) -> Record {
-        Record {
+    fn record(cycle: f64, decision: Option<f64>) -> Line {
+        Line {
             timing: Timing {
                 iteration_seconds: cycle,
                 decision_seconds: decision,
@@ -94,7 +95,7 @@ mod tests {
                 },
                 ..Timing::default()
             },
-            ..Record::default()
+            ..Line::default()
         }
     }
 

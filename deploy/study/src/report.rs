@@ -5,9 +5,11 @@
 mod csv;
 mod curves;
 mod figures;
+mod gait;
 mod html;
 mod overhead;
 mod page;
+mod reading;
 mod runs;
 mod tables;
 
@@ -47,7 +49,8 @@ pub fn files(results: &Results) -> Vec<File> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::{Judged, State, sample};
+    use crate::results::{State, sample};
+    use crate::{Judged, Told};
 
     fn text(files: &[File], name: &str) -> String {
         let file = files.iter().find(|file| file.name == name);
@@ -83,6 +86,7 @@ mod tests {
             rmse_yaw_rate: 0.875,
             energy_j: 1_000.0,
             gait: "still: 0.13 of 1.00 rad/s".to_owned(),
+            ..Judged::default()
         });
         let files = files(&results);
         let page = text(&files, "report.html");
@@ -133,7 +137,7 @@ mod tests {
             "Table IV",
             "1.100 ± 0.141", // 1.0 and 1.2
             "0.288 ± 0.017", // the paper's
-            "href=\"../runs/ampco-seed1\"",
+            "href=\"../records/ampco-seed1.json\"",
             "no &lt;memory&gt;",
             "smallest reachable p = 0.5",
             "undecided",
@@ -151,11 +155,70 @@ mod tests {
     }
 
     #[test]
+    fn plain_words_are_made_of_what_was_found() {
+        let values =
+            |from: f64| -> Vec<f64> { (0..6).map(|i| from + 0.1 * f64::from(i)).collect() };
+        let (ours, theirs) = (values(1.0), values(3.0));
+        let mut results = sample::results(&[("ampco", &ours), ("amp-0.5", &theirs)]);
+        results.file.evaluate = Some(crate::Evaluation {
+            commands: vec![[0.5, 0.0, 0.0]],
+            episodes: 1,
+            seconds: 1.0,
+            judge: Some("walk".into()),
+        });
+        for run in &mut results.runs {
+            let value = run.measured.unwrap().figures(crate::Metric::Rmse).last;
+            run.judged = vec![Judged {
+                rmse: value / 10.0,
+                energy_j: 500.0 * value, // half of what training took
+                stride_rate_hz: Some(1.0 + value),
+                reference: Some(crate::judged::Reference {
+                    stride_rate_hz: 1.0,
+                }),
+                style_reward: Some(1.0 - value / 10.0), // the other way about than their own
+                ..Judged::default()
+            }];
+            (run.told.lower_bound, run.told.upper_bound) = (Some(-0.5), Some(1.25));
+        }
+        let page = text(&files(&results), "report.html");
+        for part in [
+            "In plain words",
+            "−0.50 to 1.25",
+            "in 6 of 6 runs one of them is beyond",
+            "rank correlation of −1.00",
+            "2.00 times that of the same policies without noise",
+            "AMPCO tracks best (0.125; AMP [w = 0.5] 0.325, found by the exact test)",
+            "no method is better than AMPCO in all three at once",
+            "Holm&#39;s p = 0.03125",
+        ] {
+            assert!(
+                page.replace("Holm's", "Holm&#39;s").contains(part),
+                "{part}: {page:.9000}"
+            );
+        }
+        // The other way about, the other sentence.
+        for run in &mut results.runs {
+            run.entry = if run.entry == "ampco" {
+                "amp-0.5"
+            } else {
+                "ampco"
+            }
+            .to_owned();
+        }
+        let page = text(&files(&results), "report.html");
+        assert!(
+            page.contains(
+                "better than AMPCO in all three at once: AMP [w = 0.5] (0.125, 625, 1.25)"
+            )
+        );
+    }
+
+    #[test]
     fn a_study_without_a_finished_run_is_reported_all_the_same() {
         let mut results = sample::results(&[("ampco", &[1.0])]);
         results.runs[0].measured = None;
         results.runs[0].state = State::Missing;
-        results.runs[0].records.clear();
+        results.runs[0].told = Told::default();
         let page = text(&files(&results), "report.html");
         assert!(page.contains("not begun") && page.contains("no finished run of AMPCO"));
     }

@@ -1,13 +1,14 @@
 //! All runs of a study together: what each method came to.
 
-use serde::Deserialize;
-
 use crate::file::StudyFile;
+use crate::judged::Judged;
 use crate::matrix::Entry;
-use crate::measure::{Measured, Record};
+use crate::measure::Measured;
 use crate::metric::Metric;
 use crate::overhead::Benchmark;
+use crate::record::Record;
 use crate::statistics::Spread;
+use crate::told::Told;
 
 /// Which number of a metric: a column of the paper's tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,23 +45,6 @@ pub enum State {
     Missing,
 }
 
-/// A command tried without exploration noise: a row of `ampco evaluate --json`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-pub struct Judged {
-    /// vx, vy (m/s), yaw rate (rad/s).
-    pub command: [f64; 3],
-    /// Share of episodes without a fall.
-    pub survival: f64,
-    /// Planar, m/s.
-    pub rmse: f64,
-    /// Of the yaw rate, rad/s.
-    pub rmse_yaw_rate: f64,
-    /// J per 1,000 control steps.
-    pub energy_j: f64,
-    /// The gait in words.
-    pub gait: String,
-}
-
 /// One run with all that is known of it.
 #[derive(Clone, Debug)]
 pub struct Run {
@@ -70,14 +54,14 @@ pub struct Run {
     pub seed: u64,
     /// Its name.
     pub name: String,
-    /// Its folder, as the report links to it.
-    pub folder: String,
+    /// Its record, or the folder of a run that has none yet, as the report links to it.
+    pub link: String,
     /// What became of it.
     pub state: State,
     /// Iterations that it was to do.
     pub target: u64,
-    /// Its lines of metrics.
-    pub records: Vec<Record>,
+    /// What its lines of metrics come to.
+    pub told: Told,
     /// The metrics over it, if it has finished and is long enough.
     pub measured: Option<Measured>,
     /// What it did without exploration noise.
@@ -85,6 +69,21 @@ pub struct Run {
 }
 
 impl Run {
+    /// A run that has a record.
+    pub fn of(record: Record, link: String) -> Self {
+        Self {
+            name: record.run_name(),
+            entry: record.entry.name,
+            seed: record.seed,
+            link,
+            state: State::Finished,
+            target: record.target,
+            told: record.told,
+            measured: record.measured,
+            judged: record.judgement.map_or_else(Vec::new, |found| found.rows),
+        }
+    }
+
     /// A number of the tables.
     pub fn value(&self, metric: Metric, column: Column) -> Option<f64> {
         let figures = self.measured.as_ref()?.figures(metric);
@@ -97,7 +96,7 @@ impl Run {
 
     /// Iteration whose report brought Phase II.
     pub fn switched_at(&self) -> Option<u64> {
-        self.records.last().and_then(|record| record.switched_at)
+        self.told.switched_at
     }
 }
 
@@ -156,6 +155,7 @@ impl Results {
 #[cfg(test)]
 pub(crate) mod sample {
     use super::*;
+    use crate::measure::Line;
 
     /// A study of constant runs: per entry a value per seed; energy is 1000 times it, style a tenth of it.
     pub(crate) fn results(values: &[(&str, &[f64])]) -> Results {
@@ -185,7 +185,7 @@ pub(crate) mod sample {
     }
 
     fn run(entry: &str, seed: u64, value: f64) -> Run {
-        let record = |iteration: u64| Record {
+        let line = |iteration: u64| Line {
             iteration,
             samples: 100 * iteration,
             phase: Some(if iteration > 120 { 2 } else { 1 }),
@@ -193,18 +193,18 @@ pub(crate) mod sample {
             energy_j: Some(1000.0 * value),
             style_mean: Some(value / 10.0),
             switched_at: (iteration > 120 && entry.starts_with("ampco")).then_some(120),
-            ..Record::default()
+            ..Line::default()
         };
-        let records: Vec<Record> = (1..=200).map(record).collect();
+        let lines: Vec<Line> = (1..=200).map(line).collect();
         Run {
             entry: entry.to_owned(),
             seed,
             name: format!("{entry}-seed{seed}"),
-            folder: format!("../runs/{entry}-seed{seed}"),
+            link: format!("../records/{entry}-seed{seed}.json"),
             state: State::Finished,
             target: 200,
-            measured: Measured::of(&records, 500),
-            records,
+            measured: Measured::of(&lines, 500),
+            told: Told::of(&lines, 200),
             judged: Vec::new(),
         }
     }

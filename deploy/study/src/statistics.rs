@@ -44,6 +44,32 @@ pub fn median(values: &[f64]) -> f64 {
     }
 }
 
+/// Spearman's rank correlation; `None` of fewer than three pairs, or where all of one side are alike.
+pub fn rank_correlation(pairs: &[(f64, f64)]) -> Option<f64> {
+    if pairs.len() < 3 {
+        return None;
+    }
+    let (first, second): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
+    let (first, second) = (ranks(&first), ranks(&second));
+    let middle = 0.5 * (pairs.len() as f64 - 1.0);
+    let product = |a: &[f64], b: &[f64]| -> f64 {
+        let both = a.iter().zip(b);
+        both.map(|(a, b)| (a - middle) * (b - middle)).sum()
+    };
+    let scale = (product(&first, &first) * product(&second, &second)).sqrt();
+    (scale > 0.0).then(|| product(&first, &second) / scale)
+}
+
+/// How many are smaller, and half of those that are alike.
+fn ranks(values: &[f64]) -> Vec<f64> {
+    let rank = |value: &f64| {
+        let smaller = values.iter().filter(|other| *other < value).count();
+        let alike = values.iter().filter(|other| *other == value).count();
+        smaller as f64 + 0.5 * (alike as f64 - 1.0)
+    };
+    values.iter().map(rank).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -63,5 +89,25 @@ mod tests {
         assert_eq!(median(&[3.0, 1.0, 2.0]), 2.0);
         assert_eq!(median(&[4.0, 1.0, 3.0, 2.0]), 2.5);
         assert!(median(&[]).is_nan());
+    }
+
+    #[test]
+    fn ranks_agree_whatever_the_scale() {
+        assert_eq!(
+            rank_correlation(&[(1.0, 1.0), (2.0, 4.0), (3.0, 9.0)]),
+            Some(1.0)
+        );
+        assert_eq!(
+            rank_correlation(&[(1.0, 3.0), (2.0, 2.0), (3.0, 1.0)]),
+            Some(-1.0)
+        );
+        // Ranks 0 1 2 3 and 1 0 3 2: (0.75 + 0.75 + 0.75 + 0.75) / 5.
+        let crossed = [(1.0, 2.0), (2.0, 1.0), (3.0, 4.0), (4.0, 3.0)];
+        assert!((rank_correlation(&crossed).unwrap() - 0.6).abs() < 1e-12);
+        assert_eq!(rank_correlation(&[(1.0, 1.0), (2.0, 2.0)]), None);
+        assert_eq!(
+            rank_correlation(&[(1.0, 1.0), (2.0, 1.0), (3.0, 1.0)]),
+            None
+        );
     }
 }

@@ -19,6 +19,16 @@ pub struct SignedRank {
     pub p: f64,
 }
 
+impl SignedRank {
+    /// The matched-pairs rank-biserial correlation:  r = (W⁺ − W⁻) / (W⁺ + W⁻)   (Kerby, 2014)
+    ///
+    /// 1 where every difference is positive, −1 where every one is negative, 0 where they balance.
+    pub fn rank_biserial(&self) -> f64 {
+        let total = (self.pairs * (self.pairs + 1)) as f64 / 2.0;
+        2.0 * self.positive / total - 1.0
+    }
+}
+
 /// Tests whether differences lie evenly about zero; `None` if none differs from zero or one is NaN.
 pub fn signed_rank(differences: &[f64]) -> Option<SignedRank> {
     let mut sized: Vec<f64> = differences.iter().copied().filter(|d| *d != 0.0).collect();
@@ -90,7 +100,9 @@ mod tests {
     fn three_pairs_on_one_side_are_two_of_eight() {
         let test = signed_rank(&[0.1, 0.3, 0.2]).unwrap();
         assert_eq!((test.positive, test.statistic), (6.0, 0.0)); // 1 + 2 + 3
-        assert_eq!(test.p, 0.25);
+        assert_eq!((test.p, test.rank_biserial()), (0.25, 1.0));
+        let mixed = signed_rank(&[-0.1, 0.3, 0.2]).unwrap(); // (5 − 1) / 6
+        assert!((mixed.rank_biserial() - 2.0 / 3.0).abs() < 1e-12);
         assert_eq!(smallest_p(3), 0.25);
         assert_eq!(smallest_p(10), 2.0 / 1024.0);
         assert_eq!(smallest_p(0), 1.0);

@@ -4,10 +4,12 @@ use std::path::Path;
 use std::process::ExitStatus;
 
 use anyhow::Result;
+use run::Folder;
 
 use super::{Conductor, Job, Task};
 use crate::group::{self, Standing};
 use crate::judgement::Judgement;
+use crate::records;
 
 impl Conductor<'_> {
     pub(super) fn ended(&mut self, job: Job, status: ExitStatus) -> Result<()> {
@@ -17,7 +19,7 @@ impl Conductor<'_> {
                 if Standing::of(planned, self.folder)? == Standing::Done {
                     let message = format!("{} is done", planned.name);
                     self.console.say(&message);
-                    self.finished(job.run)
+                    self.finished(job.run, job.place)
                 } else if !status.success() {
                     let words = group::words(status, &self.folder.log(&planned.name));
                     self.fail(job.run, &words)
@@ -46,37 +48,54 @@ impl Conductor<'_> {
     fn judged(&mut self, run: usize, draft: &Path) -> Result<()> {
         let name = &self.planned[run].name;
         let made = self.folder.run(name)?;
-        let (Some(made), Some(evaluation)) = (made, &self.file.evaluate) else {
+        let (Some(made), Some(asked)) = (made, self.judging) else {
             return Ok(());
         };
-        match Judgement::keep(&made, evaluation, draft) {
+        match Judgement::keep(&made, asked, draft) {
+            Ok(()) => self.record(run, &made),
+            Err(error) => self.fail(run, &format!("{error:#}")),
+        }
+    }
+
+    /// Writes the record of a run that is done and judged.
+    fn record(&mut self, run: usize, made: &Folder) -> Result<()> {
+        let record = records::of(made, &self.planned[run], self.judging);
+        let written = record.and_then(|record| self.folder.records().write(&record));
+        match written {
             Ok(()) => Ok(()),
             Err(error) => self.fail(run, &format!("{error:#}")),
         }
     }
 
     /// A run whose training is done: judged, if that is asked for and was not done before in the same way.
-    pub(super) fn finished(&mut self, run: usize) -> Result<()> {
+    pub(super) fn finished(&mut self, run: usize, place: usize) -> Result<()> {
         let name = self.planned[run].name.clone();
         self.progress[run].done = self.progress[run].of;
         self.folder.note(&name, None)?;
         let Some(folder) = self.folder.run(&name)? else {
             return Ok(());
         };
-        let Some(evaluation) = &self.file.evaluate else {
-            return Ok(());
+        let Some(asked) = self.judging else {
+            return self.record(run, &folder);
         };
         // One that cannot be read is found anew like one that was found otherwise.
         let known = Judgement::read(&folder).ok().flatten();
-        let known = known.and_then(|known| known.rows(&folder, Some(evaluation)));
-        if known.is_some() || self.stopping {
+        if known.is_some_and(|known| known.is_as_asked(&folder, asked)) {
+            return self.record(run, &folder);
+        }
+        if self.stopping {
             return Ok(());
         }
         let draft = Judgement::path(&folder).with_extension("draft");
-        match group::evaluate(&folder, evaluation, &draft, self.folder) {
+        match group::evaluate(&folder, asked, &draft, self.folder, self.cores.get(place)) {
             Ok(child) => {
                 let task = Task::Judging { draft };
-                self.jobs.push(Job { run, child, task });
+                self.jobs.push(Job {
+                    run,
+                    place,
+                    child,
+                    task,
+                });
                 Ok(())
             }
             Err(error) => self.fail(run, &format!("{error:#}")),

@@ -31,12 +31,12 @@ fn every_study_of_ours_can_be_planned() {
         })
         .collect();
     let counts: Vec<(&str, usize)> = counts.iter().map(|(name, n)| (name.as_str(), *n)).collect();
-    // 8 × 10, 8 × 3, 8 × 10, 9 settings × 3, 3 × 2
+    // 4 × 6, 8 × 10, 8 × 10, (9 + 2 + 2 + 1 settings) × 3, 3 × 2
     let expected = [
-        ("desktop", 80),
-        ("laptop", 24),
+        ("flagship", 24),
         ("paper", 80),
-        ("sensitivity", 27),
+        ("paper-pair", 80),
+        ("sensitivity", 42),
         ("smoke", 6),
     ];
     assert_eq!(counts, expected);

@@ -1,18 +1,49 @@
 //! What all runs of a study have in common, for the head of its report, and where they differ though they should not.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
-use ::study::Run;
+use ::study::{Record, Run};
 use anyhow::Result;
 use run::motion::{Print, differences};
+use run::{Config, Folder};
 use wording::count;
 
 use crate::folder::StudyFolder;
+use crate::records;
 
-/// What all runs have in common, for the head of the report.
+/// How a run was made, by its record or in its folder.
+pub(super) struct Made {
+    config: Config,
+    /// Processor, and how many cores; known of a record.
+    machine: Option<(String, usize)>,
+    /// Motion files by name and hash.
+    motion: Vec<(String, String)>,
+}
+
+impl Made {
+    pub(super) fn of_record(record: &Record, path: &Path) -> Result<Self> {
+        Ok(Self {
+            config: records::configuration(record, path)?,
+            machine: Some((record.origin.processor.clone(), record.origin.cores)),
+            motion: record.origin.motion.clone(),
+        })
+    }
+
+    pub(super) fn of_run(run: &Folder) -> Result<Self> {
+        Ok(Self {
+            config: run.config()?,
+            machine: None,
+            motion: records::motion(run)?,
+        })
+    }
+}
+
+/// What all runs have in common, for the head of the report; `made` is beside `runs`.
 pub(super) fn of(
     folder: &StudyFolder,
     runs: &[Run],
+    made: &[Option<Made>],
     otherwise: usize,
 ) -> Result<Vec<(String, String)>> {
     let mut facts = Vec::new();
@@ -21,33 +52,26 @@ pub(super) fn of(
         tell(
             "judgements left out",
             format!(
-                "of {}, found under another [evaluate] or before it went on; `ampco study run` with their seeds and \
-                 methods finds them anew",
+                "of {}, found under another [evaluate], by another judge or before it went on; `ampco study run` with \
+                 their seeds and methods finds them anew",
                 count(otherwise, "run")
             ),
         );
     }
-    if let Some(origin) = folder.json("origin.json")? {
-        let text = |key: &str| origin[key].as_str().unwrap_or("unknown").to_owned();
-        tell("command", text("command"));
-        tell(
-            "machine",
-            format!(
-                "{}, {}",
-                text("processor"),
-                count(origin["cores"].as_u64().unwrap_or(0), "core")
-            ),
-        );
+    for words in machines(folder, made)? {
+        tell("machine", words);
     }
-    for words in other_motion(folder, runs)? {
+    for words in other_motion(runs, made) {
         tell("reference motion not the same", words);
     }
-    let begun = runs.iter().find(|run| !run.records.is_empty());
-    let Some(run) = begun else {
+    let begun = runs
+        .iter()
+        .zip(made)
+        .find(|(run, _)| run.told.iteration > 0);
+    let Some((run, first)) = begun else {
         return Ok(facts);
     };
-    if let Some(made) = folder.run(&run.name)? {
-        let config = made.config()?;
+    if let Some(Made { config, .. }) = first {
         let value = |key: &str| {
             let given = config.given(key);
             given.map_or_else(
@@ -72,11 +96,18 @@ pub(super) fn of(
         );
         tell("kernel of Eq. 14", value("task.reward.track.kernel"));
     }
+    let seconds: f64 = runs.iter().map(|run| run.told.seconds).sum();
+    if seconds > 0.0 {
+        tell(
+            "training of all runs, hours",
+            format!("{:.2}", seconds / 3600.0),
+        );
+    }
     let rates: Vec<f64> = runs
         .iter()
-        .filter_map(|run| run.records.last())
-        .filter(|newest| newest.timing.seconds > 0.0)
-        .map(|newest| newest.samples as f64 / newest.timing.seconds)
+        .map(|run| &run.told)
+        .filter(|told| told.seconds > 0.0)
+        .map(|told| told.samples as f64 / told.seconds)
         .collect();
     let middle = ::study::statistics::median(&rates);
     if middle.is_finite() {
@@ -88,16 +119,55 @@ pub(super) fn of(
     Ok(facts)
 }
 
+/// Which machines made the runs: by their records, else the one that conducts the study.
+fn machines(folder: &StudyFolder, made: &[Option<Made>]) -> Result<Vec<String>> {
+    let mut runs_of: BTreeMap<&(String, usize), usize> = BTreeMap::new();
+    for machine in made
+        .iter()
+        .flatten()
+        .filter_map(|made| made.machine.as_ref())
+    {
+        *runs_of.entry(machine).or_default() += 1;
+    }
+    let words = |processor: &str, cores: u64| format!("{processor}, {}", count(cores, "core"));
+    if runs_of.is_empty() {
+        let origin = folder.json("origin.json")?;
+        return Ok(origin
+            .iter()
+            .map(|origin| {
+                let processor = origin["processor"].as_str().unwrap_or("unknown");
+                words(processor, origin["cores"].as_u64().unwrap_or(0))
+            })
+            .collect());
+    }
+    Ok(runs_of
+        .into_iter()
+        .map(|((processor, cores), runs)| {
+            format!(
+                "{} ({})",
+                words(processor, *cores as u64),
+                count(runs, "run")
+            )
+        })
+        .collect())
+}
+
 /// Which runs have learned from other motion files than the first run of their method: the mean over such is of neither.
-fn other_motion(folder: &StudyFolder, runs: &[Run]) -> Result<Vec<String>> {
+fn other_motion(runs: &[Run], made: &[Option<Made>]) -> Vec<String> {
+    let prints = |motion: &[(String, String)]| -> Vec<Print> {
+        let print = |(file, sha256): &(String, String)| Print {
+            file: file.into(),
+            sha256: sha256.clone(),
+        };
+        motion.iter().map(print).collect()
+    };
     let mut first: BTreeMap<&str, (&str, Vec<Print>)> = BTreeMap::new();
     let mut said = Vec::new();
-    for run in runs {
-        let Some(made) = folder.run(&run.name)? else {
+    for (run, made) in runs.iter().zip(made) {
+        let Some(made) = made else {
             continue;
         };
-        let newest = made.motion()?.pop();
-        let files = newest.map_or_else(Vec::new, |learned| learned.files);
+        let files = prints(&made.motion);
         match first.get(run.entry.as_str()) {
             None => {
                 first.insert(&run.entry, (&run.name, files));
@@ -110,5 +180,5 @@ fn other_motion(folder: &StudyFolder, runs: &[Run]) -> Result<Vec<String>> {
             }
         }
     }
-    Ok(said)
+    said
 }

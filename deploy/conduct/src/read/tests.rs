@@ -5,6 +5,13 @@ use ::study::StudyFile;
 use run::motion::Print;
 use serde_json::{Value, json};
 
+use super::judgement::{Judgement, Judging};
+
+/// As from the report's own folder.
+fn up(path: &str) -> String {
+    format!("../{path}")
+}
+
 #[test]
 fn a_folder_is_read_whatever_its_runs_came_to() {
     let place = tempfile::tempdir().unwrap();
@@ -25,7 +32,7 @@ fn a_folder_is_read_whatever_its_runs_came_to() {
         }
     }
     folder.note("ampco-seed3", Some("it fell over")).unwrap();
-    let results = results(&folder, "../").unwrap();
+    let results = results(&folder, up).unwrap();
     let states: Vec<&State> = results.runs.iter().map(|run| &run.state).collect();
     let failed = State::Failed("it fell over".to_owned());
     assert_eq!(
@@ -38,7 +45,7 @@ fn a_folder_is_read_whatever_its_runs_came_to() {
         ]
     );
     assert!(results.runs[0].measured.is_some() && results.runs[1].measured.is_none());
-    assert_eq!(results.runs[0].folder, "../runs/ampco-seed1");
+    assert_eq!(results.runs[0].link, "../runs/ampco-seed1");
     let rate = results
         .facts
         .iter()
@@ -67,7 +74,9 @@ fn judgements_of_another_kind_are_left_out_and_earlier_seeds_stay() {
         std::fs::create_dir_all(draft.parent().unwrap()).unwrap();
         let row = json!([{ "command": [0.5, 0.0, 0.0], "survival": 1.0, "rmse": 0.1, "rmse_yaw_rate": 0.2, "energy_j": 9.0, "gait": "walk" }]);
         std::fs::write(&draft, row.to_string()).unwrap();
-        let found = file(3 + seed, "[1]").evaluate.unwrap();
+        let found = Judging::of(&file(3 + seed, "[1]"), place.path())
+            .unwrap()
+            .unwrap();
         Judgement::keep(&run, &found, &draft).unwrap();
     }
     // Seed 1 was judged by four episodes, seed 2 by five.
@@ -82,13 +91,13 @@ fn judgements_of_another_kind_are_left_out_and_earlier_seeds_stay() {
             .find(|fact| fact.0 == "judgements left out")
             .map(|fact| fact.1.clone())
     };
-    let first = results(&folder, "../").unwrap();
+    let first = results(&folder, up).unwrap();
     assert_eq!(judged(&first), [1, 0]);
     assert!(left_out(&first).unwrap().starts_with("of 1 run,"));
 
     let all = matrix::together(&folder.cells().unwrap(), &file(5, "[3]").cells());
     folder.begin(&file(5, "[3]"), &[], &all).unwrap();
-    let second = results(&folder, "../").unwrap();
+    let second = results(&folder, up).unwrap();
     assert_eq!(judged(&second), [0, 1, 0]);
     assert_eq!(second.file.seeds, [1, 2, 3]);
     assert_eq!(second.entries.len(), 1);
@@ -99,14 +108,14 @@ fn judgements_of_another_kind_are_left_out_and_earlier_seeds_stay() {
             &text(4, "[1]").replace("[evaluate]", "[evaluate]\nseconds = 2.0"),
         )
         .unwrap();
-    assert_eq!(judged(&results(&folder, "../").unwrap()), [0, 0, 0]);
+    assert_eq!(judged(&results(&folder, up).unwrap()), [0, 0, 0]);
     let without = text(4, "[1]")
         .split("[evaluate]")
         .next()
         .unwrap()
         .to_owned();
     folder.write("study.toml", &without).unwrap();
-    let none = results(&folder, "../").unwrap();
+    let none = results(&folder, up).unwrap();
     assert_eq!((judged(&none), left_out(&none)), (vec![0, 0, 0], None));
 }
 
@@ -131,10 +140,7 @@ fn runs_of_a_method_that_learned_from_other_files_are_named() {
         std::fs::write(run.config_path(), "[run]\niterations = 1").unwrap();
         run.note_motion(0, files).unwrap();
     }
-    let facts = results(&folder, "../").unwrap().facts;
+    let facts = results(&folder, up).unwrap().facts;
     let told: Vec<&str> = facts.iter().map(|fact| fact.1.as_str()).collect();
-    assert_eq!(
-        told,
-        ["ampco-seed2 and ampco-seed1: /walks/a.csv has changed"]
-    );
+    assert_eq!(told, ["ampco-seed2 and ampco-seed1: a.csv has changed"]);
 }

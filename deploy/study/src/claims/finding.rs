@@ -1,9 +1,14 @@
-//! One comparison as evidence: what it shows, and whether it may count.
+//! Comparisons as evidence: what they show, and whether they may count.
+//!
+//! A claim is one comparison or several. That all of several hold is found where each is found by itself, which needs no
+//! correction: the chance to find all by chance is no greater than that of one. That one of several is the other way
+//! about could be found by chance in any of them, so there the p of Holm counts. Both are told.
 
 use wording::count;
 
 use super::Verdict;
-use crate::compare::{Comparison, LEVEL};
+use crate::compare::{Comparison, LEVEL, written};
+use crate::holm;
 use crate::metric::Metric;
 use crate::paper;
 use crate::results::{Column, Results, State};
@@ -18,57 +23,151 @@ pub(super) struct Finding {
     pub(super) words: String,
 }
 
-/// Whether `a` is better than `b` in its final value.
-pub(super) fn better(results: &Results, a: &str, b: &str, metric: Metric) -> Finding {
-    weigh(results, a, b, metric, |comparison| {
+/// What is asked of a method against another, by their final values.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Question<'a> {
+    relation: Relation,
+    a: &'a str,
+    b: &'a str,
+    metric: Metric,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Relation {
+    Better,
+    Alike,
+    Steadier,
+}
+
+/// Whether `a` is better than `b`.
+pub(super) fn better<'a>(a: &'a str, b: &'a str, metric: Metric) -> Question<'a> {
+    Question {
+        relation: Relation::Better,
+        a,
+        b,
+        metric,
+    }
+}
+
+/// Whether `a` is no worse than `b`.
+pub(super) fn alike<'a>(a: &'a str, b: &'a str, metric: Metric) -> Question<'a> {
+    Question {
+        relation: Relation::Alike,
+        a,
+        b,
+        metric,
+    }
+}
+
+/// Whether the values of `a` lie closer together than those of `b`.
+pub(super) fn steadier<'a>(a: &'a str, b: &'a str, metric: Metric) -> Question<'a> {
+    Question {
+        relation: Relation::Steadier,
+        a,
+        b,
+        metric,
+    }
+}
+
+/// The answers to several questions as one finding: all must support, one is enough to contradict.
+pub(super) fn ask(results: &Results, questions: &[Question<'_>]) -> Finding {
+    let compared: Vec<Option<Comparison>> = questions
+        .iter()
+        .map(|question| question.compare(results))
+        .collect();
+    let p: Vec<f64> = compared.iter().flatten().map(Comparison::p).collect();
+    let several = p.len() > 1;
+    let mut corrected = holm::corrected(&p).into_iter();
+    let findings = questions
+        .iter()
+        .zip(&compared)
+        .map(|(question, comparison)| match comparison {
+            None => missing(results, &[question.a, question.b]),
+            Some(comparison) => {
+                let corrected = corrected.next().unwrap_or(1.0);
+                question.answer(results, comparison, several.then_some(corrected))
+            }
+        });
+    together(findings.collect())
+}
+
+impl Question<'_> {
+    fn compare(&self, results: &Results) -> Option<Comparison> {
+        let (a, b, metric) = (self.a, self.b, self.metric);
+        match self.relation {
+            Relation::Steadier => Comparison::of_steadiness(results, a, b, metric),
+            Relation::Better | Relation::Alike => {
+                Comparison::of(results, a, b, metric, Column::Last)
+            }
+        }
+    }
+
+    /// `corrected` is Holm's p where the question is one of several.
+    fn answer(
+        &self,
+        results: &Results,
+        comparison: &Comparison,
+        corrected: Option<f64>,
+    ) -> Finding {
+        let words = self.words(results, comparison, corrected);
+        if let Some(reason) = too_little(results, comparison, &[self.a, self.b], self.metric) {
+            return undecided(words, &reason);
+        }
         let found = comparison.p() < LEVEL;
-        match (found, metric.better(comparison.first, comparison.second)) {
-            (true, true) => (Verdict::Supported, ""),
-            (true, false) => (Verdict::Contradicted, "it is the other way about"),
-            (false, _) => (Verdict::Undecided, "no difference found"),
-        }
-    })
-}
+        let against = corrected.unwrap_or(comparison.p()) < LEVEL;
+        let first = match self.relation {
+            Relation::Steadier => comparison.first < comparison.second,
+            _ => self.metric.better(comparison.first, comparison.second),
+        };
+        let (verdict, remark) = match (self.relation, found, first) {
+            (Relation::Alike, false, _) => (Verdict::Supported, ""),
+            (Relation::Alike, true, true) => (Verdict::Supported, "it is better"),
+            (Relation::Alike, true, false) if against => (Verdict::Contradicted, "it is worse"),
+            (_, true, true) => (Verdict::Supported, ""),
+            (_, true, false) if against => (Verdict::Contradicted, "it is the other way about"),
+            (_, true, false) => (
+                Verdict::Undecided,
+                "it is the other way about, but not by the corrected p",
+            ),
+            (_, false, _) => (Verdict::Undecided, "no difference found"),
+        };
+        let words = match remark {
+            "" => words,
+            remark => format!("{words}: {remark}"),
+        };
+        Finding { verdict, words }
+    }
 
-/// Whether `a` is no worse than `b` in its final value.
-pub(super) fn alike(results: &Results, a: &str, b: &str, metric: Metric) -> Finding {
-    weigh(results, a, b, metric, |comparison| {
-        let worse = metric.better(comparison.second, comparison.first);
-        if comparison.p() >= LEVEL {
-            (Verdict::Supported, "")
-        } else if worse {
-            (Verdict::Contradicted, "it is worse")
-        } else {
-            (Verdict::Supported, "it is better")
+    fn words(&self, results: &Results, comparison: &Comparison, corrected: Option<f64>) -> String {
+        let metric = self.metric;
+        let holm = corrected.map_or_else(String::new, |p| format!("; Holm's p = {}", written(p)));
+        if self.relation == Relation::Steadier {
+            let deviation = |entry| {
+                let spread = results.spread(entry, metric, Column::Last);
+                spread.map_or(f64::NAN, |spread| spread.deviation)
+            };
+            let (a, b) = (deviation(self.a), deviation(self.b));
+            return format!(
+                "standard deviation against {}: {} and {} ({} %; {}{holm})",
+                paper::label(self.b),
+                metric.written(a),
+                metric.written(b),
+                signed(100.0 * (a / b - 1.0)),
+                comparison.words()
+            );
         }
-    })
-}
-
-/// Whether the final values of `a` lie closer together than those of `b`.
-pub(super) fn steadier(results: &Results, a: &str, b: &str, metric: Metric) -> Finding {
-    let deviation = |entry| {
-        let spread = results.spread(entry, metric, Column::Last);
-        spread.map_or(f64::NAN, |spread| spread.deviation)
-    };
-    let less = 100.0 * (1.0 - deviation(a) / deviation(b));
-    let Some(comparison) = Comparison::of_steadiness(results, a, b, metric) else {
-        return missing(results, &[a, b]);
-    };
-    let words = format!(
-        "standard deviation against {}: {} and {} ({} %; {})",
-        paper::label(b),
-        metric.written(deviation(a)),
-        metric.written(deviation(b)),
-        signed(-less),
-        comparison.words()
-    );
-    let verdict = match too_little(results, &comparison, &[a, b], metric) {
-        Some(reason) => return undecided(words, &reason),
-        None if comparison.p() >= LEVEL => Verdict::Undecided,
-        None if comparison.first < comparison.second => Verdict::Supported,
-        None => Verdict::Contradicted,
-    };
-    Finding { verdict, words }
+        format!(
+            "{} of {} {}, of {} {} ({} %; {}{holm}; {})",
+            metric.words(),
+            paper::label(self.a),
+            metric.written(comparison.first),
+            paper::label(self.b),
+            metric.written(comparison.second),
+            signed(100.0 * (comparison.first / comparison.second - 1.0)),
+            comparison.words(),
+            comparison.size(|value| metric.written(value))
+        )
+    }
 }
 
 /// Several findings as one: all must support, one is enough to contradict.
@@ -101,37 +200,6 @@ pub(super) fn undecided(words: String, reason: &str) -> Finding {
         verdict: Verdict::Undecided,
         words,
     }
-}
-
-fn weigh(
-    results: &Results,
-    a: &str,
-    b: &str,
-    metric: Metric,
-    judge: impl Fn(&Comparison) -> (Verdict, &'static str),
-) -> Finding {
-    let Some(comparison) = Comparison::of(results, a, b, metric, Column::Last) else {
-        return missing(results, &[a, b]);
-    };
-    let words = format!(
-        "{} of {} {}, of {} {} ({} %; {})",
-        metric.words(),
-        paper::label(a),
-        metric.written(comparison.first),
-        paper::label(b),
-        metric.written(comparison.second),
-        signed(100.0 * (comparison.first / comparison.second - 1.0)),
-        comparison.words()
-    );
-    if let Some(reason) = too_little(results, &comparison, &[a, b], metric) {
-        return undecided(words, &reason);
-    }
-    let (verdict, remark) = judge(&comparison);
-    let words = match remark {
-        "" => words,
-        remark => format!("{words}: {remark}"),
-    };
-    Finding { verdict, words }
 }
 
 /// Why a comparison cannot count, if it cannot.

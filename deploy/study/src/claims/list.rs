@@ -2,8 +2,11 @@
 
 use wording::count;
 
-use super::finding::{Finding, alike, better, missing, steadier, together, too_short, undecided};
+use super::finding::{
+    Finding, Question, alike, ask, better, missing, steadier, too_short, undecided,
+};
 use super::{Claim, Verdict};
+use crate::matrix::Entry;
 use crate::metric::Metric;
 use crate::overhead::Overhead;
 use crate::paper::{self, AMPCO, COMPARISON};
@@ -11,12 +14,19 @@ use crate::results::{Column, Results};
 
 const AIG: &str = "ampco-without-aig";
 const ROGER: &str = "ampco-without-roger";
+/// Share of the longest possible that episodes of robots that walk last.
+const WALKS: f64 = 0.8;
 
 pub(super) fn all(results: &Results) -> Vec<Claim> {
     let others = || COMPARISON.iter().filter(|method| **method != AMPCO);
-    let against = |methods: &[&str], of: &dyn Fn(&str) -> Finding| {
-        together(methods.iter().map(|method| of(method)).collect())
-    };
+    fn against<'a>(
+        results: &Results,
+        methods: &[&'a str],
+        of: impl Fn(&'a str) -> Question<'a>,
+    ) -> Finding {
+        let questions: Vec<Question<'_>> = methods.iter().map(|method| of(method)).collect();
+        ask(results, &questions)
+    }
     let others: Vec<&str> = others().copied().collect();
     let claim = |section, text, finding: Finding| Claim {
         section,
@@ -28,34 +38,34 @@ pub(super) fn all(results: &Results) -> Vec<Claim> {
         claim(
             "Abstract",
             "AMPCO's energy varies 67 to 90 % less over seeds than that of every baseline.",
-            against(&others, &|other| {
-                steadier(results, AMPCO, other, Metric::Energy)
+            against(results, &others, |other| {
+                steadier(AMPCO, other, Metric::Energy)
             }),
         ),
         claim(
             "Abstract, IV-A",
             "AMPCO takes about 70 % less energy than the task-focused baselines, AMP [w = 0.5] and AdaMimic.",
-            against(&["amp-0.5", "adamimic"], &|other| {
-                better(results, AMPCO, other, Metric::Energy)
+            against(results, &["amp-0.5", "adamimic"], |other| {
+                better(AMPCO, other, Metric::Energy)
             }),
         ),
         claim(
             "IV-A",
             "AMPCO tracks the velocity as well as the best, AdaMimic (0.288 against 0.280 m/s, p = 0.77).",
-            alike(results, AMPCO, "adamimic", Metric::Rmse),
+            ask(results, &[alike(AMPCO, "adamimic", Metric::Rmse)]),
         ),
         claim(
             "IV-A",
             "AMPCO tracks better than the energy-efficient baselines, AMP [w = 0.7] and AMP [w = 0.8].",
-            against(&["amp-0.7", "amp-0.8"], &|other| {
-                better(results, AMPCO, other, Metric::Rmse)
+            against(results, &["amp-0.7", "amp-0.8"], |other| {
+                better(AMPCO, other, Metric::Rmse)
             }),
         ),
         claim(
             "IV-A",
             "AMPCO's final discriminator reward is the highest of all (p < 0.05 against each baseline).",
-            against(&others, &|other| {
-                better(results, AMPCO, other, Metric::Style)
+            against(results, &others, |other| {
+                better(AMPCO, other, Metric::Style)
             }),
         ),
         claim(
@@ -71,19 +81,25 @@ pub(super) fn all(results: &Results) -> Vec<Claim> {
         claim(
             "IV-B",
             "Without AIG the tracking is the same (p = 0.28) but the energy 154 % higher.",
-            together(vec![
-                alike(results, AMPCO, AIG, Metric::Rmse),
-                better(results, AMPCO, AIG, Metric::Energy),
-            ]),
+            ask(
+                results,
+                &[
+                    alike(AMPCO, AIG, Metric::Rmse),
+                    better(AMPCO, AIG, Metric::Energy),
+                ],
+            ),
         ),
         claim(
             "IV-B",
             "Without ROGER energy is lowest and the discriminator reward highest, but tracking 25 % worse.",
-            together(vec![
-                better(results, ROGER, AMPCO, Metric::Energy),
-                better(results, ROGER, AMPCO, Metric::Style),
-                better(results, AMPCO, ROGER, Metric::Rmse),
-            ]),
+            ask(
+                results,
+                &[
+                    better(ROGER, AMPCO, Metric::Energy),
+                    better(ROGER, AMPCO, Metric::Style),
+                    better(AMPCO, ROGER, Metric::Rmse),
+                ],
+            ),
         ),
         claim(
             "IV-B",
@@ -101,7 +117,8 @@ pub(super) fn all(results: &Results) -> Vec<Claim> {
             overhead(results),
         ),
     ];
-    if results.file.sweep.is_some() {
+    let of_table_two = |entry: &Entry| entry.values.iter().any(is_of_table_two);
+    if results.entries.iter().any(of_table_two) {
         claims.push(claim(
             "III-C",
             "All settings of α and p take statistically equivalent energy (p > 0.05).",
@@ -119,7 +136,7 @@ fn collapse(results: &Results) -> Finding {
     let (Some(theirs), Some(ours)) = (mean("adamimic"), mean(AMPCO)) else {
         return missing(results, &["adamimic", AMPCO]);
     };
-    let found = better(results, AMPCO, "adamimic", Metric::Style);
+    let found = ask(results, &[better(AMPCO, "adamimic", Metric::Style)]);
     let collapsed = theirs < 0.1 * ours;
     match (found.verdict, collapsed) {
         // A style reward that is merely lower has not collapsed.
@@ -153,10 +170,11 @@ fn variation(results: &Results, others: &[&str]) -> Finding {
         )
     });
     let steadiness = |metric| {
-        let each = others
+        let each: Vec<Question<'_>> = others
             .iter()
-            .map(|other| steadier(results, AMPCO, other, metric));
-        together(each.collect()).verdict
+            .map(|other| steadier(AMPCO, other, metric))
+            .collect();
+        ask(results, &each).verdict
     };
     let verdicts = [steadiness(Metric::Energy), steadiness(Metric::Rmse)];
     let small = of(AMPCO, Metric::Energy) < 7.2 && of(AMPCO, Metric::Rmse) < 6.0;
@@ -239,6 +257,18 @@ fn switch(results: &Results) -> Finding {
             first.target
         ));
     }
+    let walked = runs
+        .iter()
+        .filter_map(|run| run.told.episode_share_at_switch);
+    let walked: Vec<f64> = walked.collect();
+    if !walked.is_empty() {
+        let long = walked.iter().filter(|share| **share >= WALKS).count();
+        words.push_str(&format!(
+            "; in {long} of these {} episodes then lasted {:.0} % of the longest possible or more",
+            walked.len(),
+            100.0 * WALKS
+        ));
+    }
     if at.len() == runs.len() {
         return Finding {
             verdict: Verdict::Supported,
@@ -262,7 +292,7 @@ fn overhead(results: &Results) -> Finding {
     let measured: Vec<Overhead> = results
         .runs
         .iter()
-        .filter_map(|run| Overhead::of(&run.records))
+        .filter_map(|run| run.told.overhead)
         .collect();
     if measured.is_empty() {
         return undecided(String::new(), "no run has recorded it");
@@ -293,7 +323,7 @@ fn sensitivity(results: &Results) -> Finding {
     let swept: Vec<&str> = results
         .entries
         .iter()
-        .filter(|entry| !entry.values.is_empty())
+        .filter(|entry| !entry.values.is_empty() && entry.values.iter().all(is_of_table_two))
         .map(|entry| entry.name.as_str())
         .collect();
     let Some(usual) = swept
@@ -304,10 +334,15 @@ fn sensitivity(results: &Results) -> Finding {
         return undecided(String::new(), "nothing was varied");
     };
     let rest = swept.iter().filter(|name| *name != usual);
-    together(
-        rest.map(|name| alike(results, usual, name, Metric::Energy))
-            .collect(),
-    )
+    let questions: Vec<Question<'_>> = rest
+        .map(|name| alike(usual, name, Metric::Energy))
+        .collect();
+    ask(results, &questions)
+}
+
+/// Whether a swept value is of α or p.
+fn is_of_table_two((key, _): &(String, toml::Value)) -> bool {
+    ["scheduler.alpha", "scheduler.percentile"].contains(&key.as_str())
 }
 
 /// Whether a setting is the paper's: every swept value 0.95.

@@ -18,10 +18,10 @@ pub(super) fn runs(results: &Results) -> String {
         let _ = write!(text, ",{}_{}", metric.key(), column.key());
     });
     text.push_str(
-        ",switched_at,lower_bound,upper_bound,decision_share,weighting_share,decision_share_of_sums,decision_us,weighting_us,cycle_s,folder\n",
+        ",switched_at,lower_bound,upper_bound,decision_share,weighting_share,decision_share_of_sums,decision_us,weighting_us,cycle_s,record\n",
     );
     for run in &results.runs {
-        let newest = run.records.last().cloned().unwrap_or_default();
+        let told = &run.told;
         let state = match &run.state {
             State::Finished => "finished",
             State::Unfinished => "unfinished",
@@ -35,29 +35,29 @@ pub(super) fn runs(results: &Results) -> String {
             run.name,
             run.entry,
             run.seed,
-            newest.iteration,
-            newest.samples,
-            newest.timing.seconds,
+            told.iteration,
+            told.samples,
+            told.seconds,
             optional(window)
         );
         each(|metric, column| {
             let _ = write!(text, ",{}", optional(run.value(metric, column)));
         });
-        let overhead = Overhead::of(&run.records);
+        let overhead = told.overhead;
         let of = |part: fn(&Overhead) -> f64| optional(overhead.as_ref().map(part));
         let _ = writeln!(
             text,
             ",{},{},{},{},{},{},{},{},{},{}",
-            optional(newest.switched_at),
-            optional(newest.lower_bound),
-            optional(newest.upper_bound),
+            optional(told.switched_at),
+            optional(told.lower_bound),
+            optional(told.upper_bound),
             of(|overhead| overhead.decision_share),
             of(|overhead| overhead.weighting_share),
             of(|overhead| overhead.decision_share_of_sums),
             of(|overhead| 1e6 * overhead.decision),
             of(|overhead| 1e6 * overhead.weighting),
             of(|overhead| overhead.cycle),
-            quoted(&run.folder)
+            quoted(&run.link)
         );
     }
     text
@@ -94,7 +94,8 @@ pub(super) fn methods(results: &Results) -> String {
 /// A row per pair of methods and column.
 pub(super) fn tests(results: &Results) -> String {
     let mut text =
-        "first,second,metric,column,pairs,first_mean,second_mean,statistic,p,smallest_p\n"
+        "first,second,metric,column,pairs,first_mean,second_mean,statistic,p,smallest_p,rank_biserial,\
+         median_difference,low,high\n"
             .to_owned();
     for (index, first) in results.entries.iter().enumerate() {
         for second in &results.entries[index + 1..] {
@@ -105,7 +106,7 @@ pub(super) fn tests(results: &Results) -> String {
                 };
                 let _ = writeln!(
                     text,
-                    "{a},{b},{},{},{},{},{},{},{},{}",
+                    "{a},{b},{},{},{},{},{},{},{},{},{},{},{},{}",
                     metric.key(),
                     column.key(),
                     found.pairs,
@@ -113,7 +114,11 @@ pub(super) fn tests(results: &Results) -> String {
                     found.second,
                     optional(found.test.map(|test| test.statistic)),
                     found.p(),
-                    found.smallest_p()
+                    found.smallest_p(),
+                    found.rank_biserial(),
+                    optional(found.difference.map(|found| found.median)),
+                    optional(found.difference.map(|found| found.low)),
+                    optional(found.difference.map(|found| found.high))
                 );
             });
         }

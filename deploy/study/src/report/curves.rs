@@ -3,9 +3,7 @@
 use crate::metric::Metric;
 use crate::results::{Results, Run};
 use crate::statistics::Spread;
-
-/// Points of a curve at most: as many as a figure can show.
-const POINTS: u64 = 150;
+use crate::told::groups;
 
 /// A point of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,15 +14,12 @@ pub struct Point {
     pub spread: Spread,
 }
 
-/// A method's curve over its finished runs.
+/// A method's curve over its finished runs, on the grid of the longest.
 pub fn curve(results: &Results, entry: &str, metric: Metric) -> Vec<Point> {
     let runs: Vec<&Run> = results.measured(entry).collect();
     let last = runs.iter().map(|run| run.target).max().unwrap_or(0);
-    let size = last.div_ceil(POINTS).max(1);
-    (0..last.div_ceil(size))
-        .filter_map(|group| {
-            let from = group * size;
-            let until = (from + size).min(last);
+    groups(last)
+        .filter_map(|(from, until)| {
             let means: Vec<f64> = runs
                 .iter()
                 .filter_map(|run| mean(run, metric, from, until))
@@ -37,17 +32,13 @@ pub fn curve(results: &Results, entry: &str, metric: Metric) -> Vec<Point> {
         .collect()
 }
 
-/// Of a run over iterations `from` + 1 to `until`.
+/// Of a run's points whose iterations lie within `from` + 1 to `until`: one, if its grid is this one.
 fn mean(run: &Run, metric: Metric, from: u64, until: u64) -> Option<f64> {
-    let begin = run
-        .records
-        .partition_point(|record| record.iteration <= from);
-    let end = run
-        .records
-        .partition_point(|record| record.iteration <= until);
-    let values: Vec<f64> = run.records[begin..end.max(begin)]
-        .iter()
-        .filter_map(|record| record.value(metric))
+    let inside = |(begin, end): &(u64, u64)| *begin >= from && *end <= until;
+    let points = groups(run.target).zip(run.told.curves.of(metric));
+    let values: Vec<f64> = points
+        .filter(|(group, _)| inside(group))
+        .filter_map(|(_, value)| *value)
         .collect();
     Spread::of(&values).map(|spread| spread.mean)
 }

@@ -53,7 +53,7 @@ pub(super) fn overhead(results: &Results) -> String {
                 .runs
                 .iter()
                 .filter(|run| run.entry == entry.name)
-                .filter_map(|run| Overhead::of(&run.records))
+                .filter_map(|run| run.told.overhead)
                 .collect();
             if of_runs.is_empty() {
                 return None;

@@ -4,15 +4,17 @@ use std::fmt::Write;
 
 use super::figures::Drawn;
 use super::html::{self, Cell, escape, head, table};
-use super::{overhead, runs, tables};
-use crate::claims::{Verdict, claims};
+use super::{gait, overhead, reading, runs, tables};
+use crate::claims::{Claim, Verdict, claims};
 use crate::paper::{self, ABLATION, AMPCO, COMPARISON};
 use crate::results::{Results, State};
 use crate::wilcoxon::smallest_p;
 
 pub(super) fn page(results: &Results, figures: &[Drawn]) -> String {
     let mut body = opening(results);
-    body.push_str(&said(results));
+    let claims = claims(results);
+    body.push_str(&reading::reading(results, &claims));
+    body.push_str(&said(claims));
     let asked = |methods: &[&'static str]| -> Vec<&'static str> {
         methods
             .iter()
@@ -67,6 +69,7 @@ pub(super) fn page(results: &Results, figures: &[Drawn]) -> String {
         );
     }
     body.push_str(&overhead::overhead(results));
+    body.push_str(&gait::gait(results));
     body.push_str(&runs::judged(results));
     body.push_str(&runs::runs(results));
     html::page(&results.file.title, &body)
@@ -107,8 +110,7 @@ fn opening(results: &Results) -> String {
 }
 
 /// What of the paper stands, in plain words.
-fn said(results: &Results) -> String {
-    let mut claims = claims(results);
+fn said(mut claims: Vec<Claim>) -> String {
     claims.sort_by_key(|claim| claim.verdict);
     let count = |verdict| {
         claims
@@ -120,7 +122,9 @@ fn said(results: &Results) -> String {
         "<h2>What of the paper these runs bear out</h2>\n<p>Of {} claims {} are supported, {} contradicted, {} cannot be \
          decided. A claim that one method is better is supported where the exact Wilcoxon signed-rank test finds it \
          (p &lt; 0.05, two-sided, over seeds that both have); one of equality is contradicted where the method is found \
-         worse. With fewer than six common seeds no outcome can count. Runs whose metric was still moving in the last \
+         worse. Where a claim is of several methods, all must be found; that one contradicts it counts by Holm's corrected p, \
+         which stands beside the uncorrected one. r is the matched-pairs rank-biserial correlation, the interval that of the \
+         bootstrap over all draws. With fewer than six common seeds no outcome can count. Runs whose metric was still moving in the last \
          fifth, or that had not entered Phase II, are too short.</p>\n",
         claims.len(),
         count(Verdict::Supported),

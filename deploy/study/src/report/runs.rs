@@ -61,7 +61,7 @@ pub(super) fn runs(results: &Results) -> String {
         .runs
         .iter()
         .map(|run| {
-            let newest = run.records.last().cloned().unwrap_or_default();
+            let told = &run.told;
             let state = match &run.state {
                 State::Finished => "finished".to_owned(),
                 State::Unfinished => "unfinished".to_owned(),
@@ -71,9 +71,9 @@ pub(super) fn runs(results: &Results) -> String {
             let mut row = vec![
                 link(run),
                 Cell::text(state),
-                Cell::text(format!("{} of {}", newest.iteration, run.target)),
-                Cell::text(newest.samples.to_string()),
-                Cell::text(format!("{:.1}", newest.timing.seconds / 60.0)),
+                Cell::text(format!("{} of {}", told.iteration, run.target)),
+                Cell::text(told.samples.to_string()),
+                Cell::text(format!("{:.1}", told.seconds / 60.0)),
             ];
             for metric in Metric::ALL {
                 for column in [Column::Peak, Column::Last] {
@@ -90,19 +90,17 @@ pub(super) fn runs(results: &Results) -> String {
             row.push(Cell::text(
                 switched.map_or("–".to_owned(), |at| at.to_string()),
             ));
-            row.push(Cell::text(
-                match newest.lower_bound.zip(newest.upper_bound) {
-                    Some((lower, upper)) => format!("{lower:.3} to {upper:.3}"),
-                    None => "–".to_owned(),
-                },
-            ));
+            row.push(Cell::text(match told.lower_bound.zip(told.upper_bound) {
+                Some((lower, upper)) => format!("{lower:.3} to {upper:.3}"),
+                None => "–".to_owned(),
+            }));
             row
         })
         .collect();
     format!(
-        "<h2 id=\"runs\">Runs</h2>\n<p>Each folder lies in <code>runs/</code> of the study's folder and holds <code>config.toml</code> (every value) and \
-         <code>metrics.jsonl</code> (a line per iteration), from which the numbers here are computed: final values from \
-         the last lines that hold 1,000 control steps, peaks from the lines after the first 1,000.</p>\n{}",
+        "<h2 id=\"runs\">Runs</h2>\n<p>Each name leads to the run's record: every value of its configuration, what its lines of metrics came to, the \
+         judgement, and what it cost. Final values are of the last lines that hold 1,000 control steps, peaks of the lines \
+         after the first 1,000. A run without a record yet leads to its folder.</p>\n{}",
         table(&head(&titles), &rows)
     )
 }
@@ -110,7 +108,7 @@ pub(super) fn runs(results: &Results) -> String {
 fn link(run: &crate::results::Run) -> Cell {
     Cell::html(format!(
         "<a href=\"{}\">{}</a>",
-        escape(&run.folder),
+        escape(&run.link),
         escape(&run.name)
     ))
 }
