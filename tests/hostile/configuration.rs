@@ -6,7 +6,7 @@ use motion::MotionConfig;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use run::{Config, ConfigError, FleetConfig, RunConfig};
-use sim::{RandomizationConfig, TaskConfig};
+use sim::{EventConfig, RandomizationConfig, TaskConfig};
 use vocabulary::Section;
 
 use crate::damage::{blows, damaged};
@@ -19,6 +19,7 @@ fn whole() -> String {
     config.resolve(&FleetConfig::default());
     config.resolve(&TaskConfig::default());
     config.resolve(&RandomizationConfig::default());
+    config.resolve(&EventConfig::default());
     config.resolve(&MotionConfig::default());
     config.resolve(&PolicyConfig::default());
     config.resolve(&ExplorationConfig::default());
@@ -43,6 +44,7 @@ fn read(config: &Config) -> Result<(), ConfigError> {
         "fleet",
         "task",
         "randomization",
+        "event",
         "motion",
         "policy",
         "exploration",
@@ -54,6 +56,7 @@ fn read(config: &Config) -> Result<(), ConfigError> {
     section::<FleetConfig>(config)?;
     section::<TaskConfig>(config)?;
     section::<RandomizationConfig>(config)?;
+    section::<EventConfig>(config)?;
     section::<MotionConfig>(config)?;
     section::<PolicyConfig>(config)?;
     section::<ExplorationConfig>(config)?;

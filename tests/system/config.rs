@@ -52,18 +52,18 @@ impl Config {
 #[test]
 fn what_is_printed_is_a_preset_of_the_same_values() {
     let config = Config::new();
-    let printed = config.said(&["agile"]);
+    let printed = config.said(&["g1"]);
     for part in [
-        "# Sharpness k, s²/m².\nkernel = { from = 3.0, to = 7.0, samples = [5000000.0, 22000000.0] } # s²/m²; preset agile\n",
-        "environments = 1024 # preset agile\n",
+        "# Sharpness k, s²/m².\nkernel = { from = 2.0, to = 4.0, samples = [1500000.0, 2100000.0] } # s²/m²; preset recipe\n",
+        "window = 400 # preset g1\n",
         "percentile = 0.95 # default\n",
     ] {
         assert!(printed.contains(part), "{part}\n{printed}");
     }
     let file = config.write("again.toml", &printed);
-    let same = config.said(&[&file, "--diff", "agile"]);
+    let same = config.said(&[&file, "--diff", "g1"]);
     assert!(
-        same.ends_with("and preset agile do not differ.\non = \"agile\"\n"),
+        same.ends_with("and preset g1 do not differ.\non = \"g1\"\n"),
         "{same}"
     );
 }
@@ -72,11 +72,11 @@ fn what_is_printed_is_a_preset_of_the_same_values() {
 fn a_difference_is_a_preset_on_the_other() {
     let config = Config::new();
     for (one, other) in [
-        ("ampco", "agile"),
-        ("agile", "ampco"),
+        ("ampco", "g1"),
+        ("g1", "ampco"),
         ("recipe", "ampco-literal"),
         ("ampco-literal", "recipe"),
-        ("athlete", "smoke"),
+        ("amp-roger", "smoke"),
         ("amp-0.5", "ampco"),
     ] {
         let file = config.write("between.toml", &config.said(&[one, "--diff", other]));
@@ -150,7 +150,7 @@ fn a_run_of_an_older_program_is_understood_and_told_from_a_preset() {
 #[test]
 fn mistakes_are_named_with_what_was_meant() {
     let config = Config::new();
-    config.write("agile-1/config.toml", "");
+    config.write("walk-1/config.toml", "");
     config.write("a.toml", "on = \"b.toml\"");
     config.write("b.toml", "on = \"a.toml\"");
     config.write("gone.toml", "[ppo]\nkl_band = 2.0");
@@ -158,12 +158,12 @@ fn mistakes_are_named_with_what_was_meant() {
     config.write("picture.toml", "GIF8");
     for (arguments, parts) in [
         (
-            &["agil"][..],
-            ["no preset, no file and no run `agil`", "`agile`"],
+            &["reciep"][..],
+            ["no preset, no file and no run `reciep`", "`recipe`"],
         ),
-        (&["agile-2"], ["no run `agile-2`", "`agile-1`"]),
+        (&["walk-2"], ["no run `walk-2`", "`walk-1`"]),
         (
-            &["agile", "--diff", "smok"],
+            &["g1", "--diff", "smok"],
             ["`smok`", "did you mean `smoke`"],
         ),
         (&["a.toml"], ["circle", "b.toml on"]),
@@ -204,15 +204,12 @@ fn what_is_taken_of_several_of_one_name_is_told() {
         format!("`smoke` is the preset here; the run is {run}\n")
     );
     assert!(told(&run).0.starts_with("# run smoke: "));
-    config.write("agile", "on = \"smoke\"");
-    let (said, other) = told("agile");
-    assert!(said.starts_with("# preset agile: "), "{said}");
-    assert_eq!(other, "`agile` is the preset here; the file is ./agile\n");
-    let (said, other) = told("./agile");
-    assert!(
-        said.contains("/agile: ") && other.is_empty(),
-        "{said} {other}"
-    );
+    config.write("g1", "on = \"smoke\"");
+    let (said, other) = told("g1");
+    assert!(said.starts_with("# preset g1: "), "{said}");
+    assert_eq!(other, "`g1` is the preset here; the file is ./g1\n");
+    let (said, other) = told("./g1");
+    assert!(said.contains("/g1: ") && other.is_empty(), "{said} {other}");
 }
 
 #[test]
@@ -252,16 +249,13 @@ fn keys_are_counted() {
     };
     // A preset has no keys of terms that it does not list.
     assert!(of("ampco") < count && of("smoke") < count);
-    assert_eq!(
-        config.said(&["agile", "--diff", "agile", "--count"]).trim(),
-        "0"
-    );
+    assert_eq!(config.said(&["g1", "--diff", "g1", "--count"]).trim(), "0");
 }
 
 #[test]
 fn a_reader_that_has_seen_enough_is_no_failure() {
     let mut child = Command::new(program("ampco"))
-        .args(["config", "agile"])
+        .args(["config", "g1"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()

@@ -131,8 +131,10 @@ fn the_smoke_study_survives_a_stop_and_its_report_says_what_the_runs_say() {
         let switched = lines[119]["switched_at"].as_u64();
         assert_eq!(row["switched_at"].parse().ok(), switched);
         assert!(number(row, "decision_share") > 0.0 && number(row, "weighting_share") > 0.0);
-        let link = format!("href=\"../runs/{}\"", row["run"]);
-        assert!(page.contains(&link) && out.join("runs").join(&row["run"]).is_dir());
+        let record = format!("records/{}.json", row["run"]);
+        assert!(page.contains(&format!("href=\"../{record}\"")));
+        let length = fs::metadata(out.join(record)).expect("a record").len();
+        assert!(length <= 60_000, "{length} bytes");
     }
     for method in table(&out.join("report/methods.csv")) {
         let of_method = rows.iter().filter(|row| row["method"] == method["method"]);
@@ -159,6 +161,36 @@ fn the_smoke_study_survives_a_stop_and_its_report_says_what_the_runs_say() {
     ] {
         assert!(page.contains(part), "{part}");
     }
+
+    // Without its runs the study has the same report, and goes on in another folder from its records.
+    fs::remove_dir_all(out.join("runs")).expect("removed");
+    assert_eq!(report(&out), page);
+    let elsewhere = place.run("elsewhere");
+    let mut command = Command::new(program("ampco"));
+    command
+        .args(["study", "run"])
+        .arg(&file)
+        .arg("--out")
+        .arg(&elsewhere);
+    command
+        .args(["--jobs", "2", "--records"])
+        .arg(out.join("records"));
+    let (done, _, said) = finish(command);
+    assert!(done && said.contains("6 of 6 runs done"), "{said}");
+    assert!(
+        !elsewhere.join("runs/ampco-seed1").exists(),
+        "no run was made again"
+    );
+    let mut command = Command::new(program("ampco"));
+    command
+        .args(["study", "merge"])
+        .arg(place.run("all"))
+        .args([&out, &elsewhere]);
+    let (done, said, complained) = finish(command);
+    assert!(
+        done && said.starts_with("6 records taken over"),
+        "{complained}"
+    );
 }
 
 #[test]

@@ -31,8 +31,8 @@ Examples:
   ampco train --run walk --resume --minutes 20    twenty more, from the last checkpoint
   ampco train --preset amp-0.5 --set seed=7       another method, another seed
   ampco train --set task.reward.track.kernel=2.0  any key of the configuration
-  ampco config agile --diff ampco                 what is another in it, key by key
-  ampco stages athlete                            nine runs in a row: every direction, and a run
+  ampco config g1 --diff ampco                    what is another in it, key by key
+  ampco stages pushed                             runs in a row, each from the one before
   ampco status                                    the newest run: how it is going
   ampco actor --run walk                          lend another core to a running group
   ampco evaluate walk --command 0.8,0,0 --json    how well the policy walks
@@ -42,7 +42,7 @@ Examples:
   ampco motions import 02_01.amc --out walks      motion capture, onto the robot
   ampco export walk --out walk-policy             policy.onnx and all that a robot needs
   ampco play walk --html walk.html                a page that plays it
-  ampco study run deploy/studies/laptop.toml      eight methods, three seeds, in the paper's tables
+  ampco study run deploy/studies/flagship.toml    four methods, six seeds, in the paper's tables
   ampco bench sim                                 how fast this machine simulates
   ampco soak --kills 500                          kill at random, and see that nothing is lost
 

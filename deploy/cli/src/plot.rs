@@ -17,9 +17,9 @@ const POINTS: usize = 150;
 
 /// Draw the learning curves of runs as SVG
 ///
-/// Episode length, style and task reward, task weight, velocity error and hip correlation over
-/// millions of samples; a line marks where Phase II began. A curve is a mean over successive
-/// iterations, its band their least and greatest.
+/// Episode length, style and task reward, task weight, velocity error, strides and hip correlation over millions of
+/// samples, or over minutes; a line marks where Phase II began. A curve is a mean over successive iterations, its band
+/// their least and greatest.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Plot {
     /// Names or folders of the runs [default: the newest]
@@ -30,6 +30,9 @@ pub(crate) struct Plot {
     /// File to write [default: curves.svg in the first run's folder]
     #[arg(long, value_name = "FILE.svg")]
     out: Option<PathBuf>,
+    /// Over minutes of training instead of samples: what a run costs its user
+    #[arg(long)]
+    minutes: bool,
 }
 
 /// What is drawn of a line of metrics; a line of a refused iteration has less.
@@ -44,7 +47,25 @@ struct Record {
     task_weight: Option<f64>,
     rmse: Option<f64>,
     hip_correlation: Option<f64>,
+    stride_rate_hz: Option<f64>,
+    timing: Timing,
 }
+
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default)]
+struct Timing {
+    iteration_seconds: Option<f64>,
+}
+
+/// What curves are drawn over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Over {
+    Samples,
+    Minutes,
+}
+
+/// A run's name, and its lines with where each lies on the horizontal axis.
+type Run = (String, Vec<(f64, Record)>);
 
 /// A curve: its title, its unit, the range it must show, its key.
 struct Curve {
@@ -54,7 +75,7 @@ struct Curve {
     value: fn(&Record) -> Option<f64>,
 }
 
-const CURVES: [Curve; 6] = [
+const CURVES: [Curve; 7] = [
     Curve {
         title: "episode length",
         unit: "control steps",
@@ -86,6 +107,12 @@ const CURVES: [Curve; 6] = [
         value: |record| record.rmse,
     },
     Curve {
+        title: "strides",
+        unit: "Hz",
+        range: None,
+        value: |record| record.stride_rate_hz,
+    },
+    Curve {
         title: "hip correlation: −1 a walk, +1 a hop",
         unit: "",
         range: Some((-1.0, 1.0)),
@@ -106,18 +133,49 @@ impl Plot {
             Some(out) => out.clone(),
             None => folders[0].path().join(CURVES_FILE),
         };
-        draw(&folders, &out)?;
+        let over = match self.minutes {
+            true => Over::Minutes,
+            false => Over::Samples,
+        };
+        write(&folders, over, &out)?;
         console::print(&format!("{}\n", out.display()))
     }
 }
 
-/// Draws the curves of runs into a file.
-pub(crate) fn draw(folders: &[Folder], out: &Path) -> Result<()> {
+/// Draws the curves of a run over its samples into a file.
+pub(crate) fn draw(folder: &Folder, out: &Path) -> Result<()> {
+    write(std::slice::from_ref(folder), Over::Samples, out)
+}
+
+fn write(folders: &[Folder], over: Over, out: &Path) -> Result<()> {
     let mut runs = Vec::new();
     for folder in folders {
-        runs.push((folder.name(), records(folder)?));
+        runs.push((folder.name(), over.place(records(folder)?)));
     }
-    file::write(out, figure(&runs).svg().as_bytes())
+    file::write(out, figure(&runs, over).svg().as_bytes())
+}
+
+impl Over {
+    fn label(self) -> &'static str {
+        match self {
+            Self::Samples => "million samples",
+            Self::Minutes => "minutes of training",
+        }
+    }
+
+    /// Where each line lies. Time is that of the iterations, so that a pause between a stop and a resume counts nothing.
+    fn place(self, records: Vec<Record>) -> Vec<(f64, Record)> {
+        let mut seconds = 0.0;
+        let place = |record: Record| {
+            seconds += record.timing.iteration_seconds.unwrap_or(0.0);
+            let x = match self {
+                Self::Samples => record.samples as f64 / 1e6,
+                Self::Minutes => seconds / 60.0,
+            };
+            (x, record)
+        };
+        records.into_iter().map(place).collect()
+    }
 }
 
 fn records(folder: &Folder) -> Result<Vec<Record>> {
@@ -131,23 +189,23 @@ fn records(folder: &Folder) -> Result<Vec<Record>> {
     Ok(records)
 }
 
-fn figure(runs: &[(String, Vec<Record>)]) -> Figure {
+fn figure(runs: &[Run], over: Over) -> Figure {
     let names: Vec<&str> = runs.iter().map(|(name, _)| name.as_str()).collect();
     Figure {
         title: format!("Learning: {}", names.join(", ")),
         panels: CURVES
             .iter()
             .enumerate()
-            .map(|(index, curve)| Panel::Lines(chart(runs, curve, index == 0)))
+            .map(|(index, curve)| Panel::Lines(chart(runs, curve, over, index == 0)))
             .collect(),
     }
 }
 
-fn chart(runs: &[(String, Vec<Record>)], curve: &Curve, named: bool) -> LineChart {
+fn chart(runs: &[Run], curve: &Curve, over: Over, named: bool) -> LineChart {
     let mut chart = LineChart {
         title: curve.title.into(),
         x: Axis {
-            label: "million samples".into(),
+            label: over.label().into(),
             range: None,
         },
         y: Axis {
@@ -160,7 +218,7 @@ fn chart(runs: &[(String, Vec<Record>)], curve: &Curve, named: bool) -> LineChar
         let colour = Colour::Series(index);
         let points: Vec<(f64, f64)> = records
             .iter()
-            .map(|record| (millions(record), (curve.value)(record).unwrap_or(f64::NAN)))
+            .map(|(x, record)| (*x, (curve.value)(record).unwrap_or(f64::NAN)))
             .collect();
         let spread = smooth(&points, POINTS);
         chart.bands.push(Band {
@@ -181,14 +239,10 @@ fn chart(runs: &[(String, Vec<Record>)], curve: &Curve, named: bool) -> LineChar
     chart
 }
 
-fn millions(record: &Record) -> f64 {
-    record.samples as f64 / 1e6
-}
-
 /// Where Phase II began, if it did.
-fn switch(records: &[Record]) -> Option<f64> {
-    let second = |record: &&Record| record.phase == Some(2);
-    records.iter().find(second).map(millions)
+fn switch(records: &[(f64, Record)]) -> Option<f64> {
+    let second = |(_, record): &&(f64, Record)| record.phase == Some(2);
+    records.iter().find(second).map(|(x, _)| *x)
 }
 
 #[cfg(test)]

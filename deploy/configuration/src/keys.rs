@@ -9,8 +9,22 @@ use serde_json::{Map, Value};
 use crate::resolve::SECTIONS;
 
 /// The units that a first sentence may name.
-const UNITS: [&str; 12] = [
-    "m", "s", "m/s", "rad", "rad/s", "kg", "J", "1/J", "s²/m²", "min", "samples", "degrees",
+const UNITS: [&str; 15] = [
+    "m",
+    "s",
+    "m/s",
+    "rad",
+    "rad/s",
+    "kg",
+    "N",
+    "N·m",
+    "N·m·s/rad",
+    "J",
+    "1/J",
+    "s²/m²",
+    "min",
+    "samples",
+    "degrees",
 ];
 
 /// A key of the configuration.
@@ -199,6 +213,11 @@ mod tests {
             ("randomization.impulse.range", "m/s"),
             ("randomization.impulse.seconds", "s"),
             ("randomization.joint_velocity_noise.range", "rad/s"),
+            ("event.action_delay.range", "s"),
+            ("event.joint_friction.range", "N·m"),
+            ("event.slope.range", "rad"),
+            ("event.force.range", "N"),
+            ("event.force.duration", "s"),
             ("discriminator.command_blur", "m/s, m/s, rad/s"),
             ("ppo.critic_first", "samples"),
         ] {

@@ -5,19 +5,20 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use run::Config;
-use run::config::{Source, lay};
+use run::config::{METHOD, Source, lay, lay_alone};
 use terminal::failure::usage;
 
 use crate::resolve;
 
 /// Those of ours, by name: part of the program, so they need no folder beside it.
-const EMBEDDED: [(&str, &str); 18] = [
+const EMBEDDED: [(&str, &str); 14] = [
     ("ampco", include_str!("../../presets/ampco.toml")),
     (
         "ampco-literal",
         include_str!("../../presets/ampco-literal.toml"),
     ),
     ("g1", include_str!("../../presets/g1.toml")),
+    ("g1-robot", include_str!("../../presets/g1-robot.toml")),
     ("pair", include_str!("../../presets/pair.toml")),
     ("recipe", include_str!("../../presets/recipe.toml")),
     ("amp-0.5", include_str!("../../presets/amp-0.5.toml")),
@@ -32,14 +33,6 @@ const EMBEDDED: [(&str, &str); 18] = [
     (
         "ampco-without-roger",
         include_str!("../../presets/ampco-without-roger.toml"),
-    ),
-    ("agile", include_str!("../../presets/agile.toml")),
-    ("sprint", include_str!("../../presets/sprint.toml")),
-    ("runner", include_str!("../../presets/runner.toml")),
-    ("athlete", include_str!("../../presets/athlete.toml")),
-    (
-        "athlete-robust",
-        include_str!("../../presets/athlete-robust.toml"),
     ),
     ("smoke", include_str!("../../presets/smoke.toml")),
 ];
@@ -81,6 +74,23 @@ pub fn find(given: &str) -> Result<Preset> {
         config,
         notices,
     })
+}
+
+/// The same on another base than its own: of `base` and all that it lies on everything but the method, and over that what
+/// `given` itself sets and takes away. What stands between `given` and its own base is left out.
+pub fn find_on(given: &str, base: &str) -> Result<Preset> {
+    let mut preset = find(given)?;
+    let mut config = Config::default();
+    let mut notices = lay_over(&mut config, base)?;
+    config.remove(METHOD);
+    notices.extend(lay_alone(&mut config, &top(given)?, resolve::default)?);
+    // One that only names its base, as `ampco` does, has the method of that.
+    if let (None, Some(method)) = (config.given(METHOD), preset.config.given(METHOD)) {
+        config.put(METHOD, method.clone(), &preset.origin);
+    }
+    preset.config = config;
+    preset.notices = notices;
+    Ok(preset)
 }
 
 /// Lays a preset, and all that it lies on, over a configuration; what is to be said of it.

@@ -13,7 +13,7 @@ use motion::MotionConfig;
 use observation::{ObservationConfig, Tables};
 use run::{Config, FleetConfig, RunConfig};
 use schemars::{Schema, SchemaGenerator};
-use sim::{RandomizationConfig, TaskConfig};
+use sim::{EventConfig, RandomizationConfig, TaskConfig};
 use toml::Value;
 use vocabulary::Section;
 
@@ -28,11 +28,12 @@ pub struct Known {
 }
 
 /// Every section there is.
-pub const SECTIONS: [Known; 11] = [
+pub const SECTIONS: [Known; 12] = [
     known::<RunConfig>(),
     known::<FleetConfig>(),
     known::<TaskConfig>(),
     known::<RandomizationConfig>(),
+    known::<EventConfig>(),
     known::<ObservationConfig>(),
     known::<MotionConfig>(),
     known::<PolicyConfig>(),
@@ -83,6 +84,10 @@ pub fn resolve(config: &mut Config) -> Result<Resolved> {
     }
     let observation: ObservationConfig = config.section()?;
     let tables = observation.tables().expect("a section that was checked");
+    let event: EventConfig = config.section()?;
+    event
+        .check_beside(&config.section()?)
+        .map_err(|invalid| config.refuse(EventConfig::NAME, &invalid.path, &invalid))?;
     let discriminator: DiscriminatorConfig = config.section()?;
     if discriminator.command_blur.is_some() && tables.velocities().is_none() {
         return Err(config

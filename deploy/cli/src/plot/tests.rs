@@ -15,7 +15,8 @@ fn run(runs: &Path, name: &str) -> Folder {
         } else {
             let phase = if iteration < 3 { 1 } else { 2 };
             json!({ "iteration": iteration, "samples": samples, "phase": phase,
-                        "episode_length": null, "rmse": 0.5, "hip_correlation": -0.5 })
+                        "episode_length": null, "rmse": 0.5, "hip_correlation": -0.5,
+                        "timing": { "iteration_seconds": 30.0 } })
         };
         metrics.append(&record).unwrap();
     }
@@ -25,11 +26,15 @@ fn run(runs: &Path, name: &str) -> Folder {
 #[test]
 fn phase_two_is_marked_and_a_refused_iteration_is_a_gap() {
     let runs = tempfile::tempdir().unwrap();
-    let records = records(&run(runs.path(), "walk")).unwrap();
+    let lines = records(&run(runs.path(), "walk")).unwrap();
+    // Half a minute each, of which the refused one has told nothing.
+    let over_time = Over::Minutes.place(lines.clone());
+    assert_eq!(switch(&over_time), Some(1.0));
+    let records = Over::Samples.place(lines);
     assert_eq!(switch(&records), Some(3.0));
     assert_eq!(switch(&records[..2]), None);
     let all = [("walk".to_owned(), records)];
-    let chart = chart(&all, &CURVES[4], true);
+    let chart = chart(&all, &CURVES[4], Over::Samples, true);
     let errors: Vec<_> = chart.lines[0].points.iter().map(|point| point.1).collect();
     assert!(errors[1].is_nan() && errors[0] == 0.5 && errors[3] == 0.5);
     assert_eq!(chart.marks.len(), 1);
@@ -46,6 +51,7 @@ fn curves_of_several_runs_are_written_to_one_file() {
             runs_dir: runs.path().to_owned(),
         },
         out: None,
+        minutes: false,
     };
     plot.run().unwrap();
     let svg = std::fs::read_to_string(runs.path().join("one/curves.svg")).unwrap();

@@ -13,14 +13,7 @@ use toml::{Table, Value};
 use wording::count;
 
 /// Those that come with the program, by name.
-const EMBEDDED: [(&str, &str); 3] = [
-    ("athlete", include_str!("../../../stages/athlete.toml")),
-    (
-        "athlete-robust",
-        include_str!("../../../stages/athlete-robust.toml"),
-    ),
-    ("strider", include_str!("../../../stages/strider.toml")),
-];
+const EMBEDDED: [(&str, &str); 1] = [("pushed", include_str!("../../../stages/pushed.toml"))];
 
 /// A file of stages as its author wrote it.
 #[derive(Debug, Deserialize)]

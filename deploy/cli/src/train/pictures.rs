@@ -26,7 +26,7 @@ pub(super) fn draw(place: &Place, folder: &Folder) {
         Err(problem) => say(&format!("play.html is not drawn: {problem:#}")),
     }
     let curves = folder.path().join(plot::CURVES_FILE);
-    match plot::draw(std::slice::from_ref(folder), &curves) {
+    match plot::draw(folder, &curves) {
         Ok(()) => say(&format!("{}: how it learned", curves.display())),
         Err(problem) => say(&format!("{} is not drawn: {problem:#}", plot::CURVES_FILE)),
     }

@@ -98,11 +98,11 @@ fn a_file_lies_on_another_beside_it_and_that_on_one_of_ours() {
     let files = Files::new(&[
         (
             "deep/top.toml",
-            "on = \"../base.toml\"\nunset = [\"task.gate.effort\", \"motion.clips\"]\n[ppo]\nepochs = 7",
+            "on = \"../base.toml\"\nunset = [\"randomization.impulse\", \"motion.clips\"]\n[ppo]\nepochs = 7",
         ),
         (
             "base.toml",
-            "on = \"agile\"\n[ppo]\nepochs = 5\nminibatch = 64\n[motion]\nclips = [{ file = \"x.csv\" }]",
+            "on = \"g1\"\n[ppo]\nepochs = 5\nminibatch = 64\n[motion]\nclips = [{ file = \"x.csv\" }]",
         ),
     ]);
     let (top, base) = (
@@ -112,14 +112,15 @@ fn a_file_lies_on_another_beside_it_and_that_on_one_of_ours() {
     let number = |config: &Config, path: &str| config.given(path).and_then(|v| v.as_integer());
     assert_eq!(number(&top, "ppo.epochs"), Some(7));
     assert_eq!(number(&top, "ppo.minibatch"), Some(64));
-    // `agile` has 1024 robots, an effort gate and clips of its own.
-    assert_eq!(number(&top, "fleet.environments"), Some(1024));
-    assert!(base.given("task.gate.effort").is_some() && top.given("task.gate.effort").is_none());
+    // `g1` has windows, pushes and clips of its own.
+    assert_eq!(number(&top, "scheduler.window"), Some(400));
+    let pushes = |config: &Config| config.given("randomization.impulse").is_some();
+    assert!(pushes(&base) && !pushes(&top));
     assert!(top.given("motion.clips").is_none());
     for (path, origin) in [
         ("ppo.epochs", files.path("deep/top.toml")),
         ("ppo.minibatch", files.path("base.toml")),
-        ("fleet.environments", "preset agile".to_owned()),
+        ("scheduler.window", "preset g1".to_owned()),
     ] {
         assert_eq!(top.origin(path), Some(&*origin), "{path}");
     }
@@ -154,26 +155,29 @@ fn a_circle_is_told_with_all_that_are_in_it() {
 #[test]
 fn what_is_not_there_is_named_with_the_closest() {
     let files = Files::new(&[
-        ("on.toml", "on = \"agil\""),
+        ("on.toml", "on = \"reciep\""),
         (
             "unset.toml",
-            "on = \"agile\"\nunset = [\"task.gate.efort\"]",
+            "on = \"g1\"\nunset = [\"randomization.impuls\"]",
         ),
         ("nothing.toml", "unset = [\"ppo.epochs\"]"),
         ("term.toml", "unset = [\"task.reward.track\"]"),
         ("table.toml", "unset = [\"task.command\"]"),
         ("absent.toml", "unset = [\"task.gate.effort\"]"),
-        ("kind.toml", "on = [\"agile\"]"),
-        ("list.toml", "on = \"agile\"\nunset = \"task.gate\""),
-        ("mixed.toml", "on = \"agile\"\nunset = [1]"),
+        ("kind.toml", "on = [\"g1\"]"),
+        ("list.toml", "on = \"g1\"\nunset = \"task.gate\""),
+        ("mixed.toml", "on = \"g1\"\nunset = [1]"),
         ("broken.toml", "on = \"below.toml\""),
         ("below.toml", "[ppo\n"),
     ]);
     for (name, parts) in [
-        ("on.toml", ["on = \"agil\"", "did you mean `agile`"]),
+        ("on.toml", ["on = \"reciep\"", "did you mean `recipe`"]),
         (
             "unset.toml",
-            ["task.gate.efort", "did you mean `task.gate.effort`"],
+            [
+                "randomization.impuls",
+                "did you mean `randomization.impulse`",
+            ],
         ),
         (
             "nothing.toml",
@@ -212,7 +216,7 @@ fn another_method_takes_the_place_of_the_one_below() {
     let files = Files::new(&[
         (
             "other.toml",
-            "on = \"agile\"\n[scheduler.method.amp_roger]\nlower = 0.1\nupper = 0.6",
+            "on = \"amp-0.5\"\n[scheduler.method.amp_roger]\nlower = 0.1\nupper = 0.6",
         ),
         (
             "same.toml",
@@ -228,7 +232,7 @@ fn another_method_takes_the_place_of_the_one_below() {
         resolve::resolve(&mut config).unwrap();
         config.given("scheduler.method").unwrap().to_string()
     };
-    // `agile` has the method amp.
+    // `amp-0.5` has the method amp.
     assert_eq!(
         method("other.toml"),
         "{ amp_roger = { lower = 0.1, upper = 0.6 } }"
@@ -242,5 +246,80 @@ fn another_method_takes_the_place_of_the_one_below() {
     assert_eq!(
         config.origin("scheduler.method"),
         Some(&*files.path("plain.toml"))
+    );
+}
+
+#[test]
+fn a_method_on_another_base_keeps_its_own_and_has_the_rest_of_the_base() {
+    let leaves = |config: &Config| {
+        let mut config = config.clone();
+        resolve::settle_all(&mut config).unwrap();
+        config.leaves()
+    };
+    let base = leaves(&find("pair").unwrap().config);
+    for name in [
+        "amp-0.5",
+        "amp-0.7",
+        "amp-0.8",
+        "amp-roger",
+        "adamimic",
+        "ampco",
+        "ampco-without-aig",
+        "ampco-without-roger",
+    ] {
+        let (own, moved) = (find(name).unwrap(), find_on(name, "pair").unwrap());
+        assert_eq!((moved.name.as_str(), moved.notices.len()), (name, 0));
+        let (own, moved) = (leaves(&own.config), leaves(&moved.config));
+        let is_method = |path: &str| path.starts_with("scheduler.method");
+        let rest = |of: &std::collections::BTreeMap<String, toml::Value>, method: bool| {
+            let mut of = of.clone();
+            of.retain(|path, _| is_method(path) == method);
+            of
+        };
+        assert_eq!(rest(&moved, true), rest(&own, true), "{name}");
+        assert_eq!(rest(&moved, false), rest(&base, false), "{name}");
+        assert_eq!(
+            moved["discriminator.frames"].as_integer(),
+            Some(2),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn a_base_with_a_method_lends_it_to_nobody() {
+    let method = |given: &str| {
+        let mut config = find_on(given, "amp-0.5").unwrap().config;
+        resolve::resolve(&mut config).unwrap();
+        config.given("scheduler.method").unwrap().to_string()
+    };
+    // `amp-0.5` has the method amp.
+    assert_eq!(method("ampco"), "\"ampco\"");
+    assert_eq!(method("adamimic"), "\"adamimic\"");
+    let files = Files::new(&[
+        ("mine.toml", "on = \"amp-0.8\"\n[ppo]\nepochs = 7"),
+        (
+            "vain.toml",
+            "on = \"recipe\"\nunset = [\"exploration.sigma\"]",
+        ),
+    ]);
+    // What it sets, on the base; the method is that of the preset by itself.
+    let mine = find_on(&files.path("mine.toml"), "pair").unwrap().config;
+    assert_eq!(
+        mine.given("ppo.epochs").and_then(|v| v.as_integer()),
+        Some(7)
+    );
+    assert_eq!(
+        mine.given("scheduler.method").unwrap()["amp"]["style_weight"].as_float(),
+        Some(0.8)
+    );
+    // What it takes away has to be there.
+    let told = format!(
+        "{:#}",
+        find_on(&files.path("vain.toml"), "pair").unwrap_err()
+    );
+    assert!(
+        told.contains("exploration.sigma") && told.contains("vain.toml"),
+        "{told}"
     );
 }

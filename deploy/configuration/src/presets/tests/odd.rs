@@ -11,11 +11,11 @@ fn what_unset_leaves_broken_is_blamed_on_it() {
         ),
         (
             "method.toml",
-            "on = \"agile\"\nunset = [\"scheduler.method.amp.style_weight\"]",
+            "on = \"amp-0.5\"\nunset = [\"scheduler.method.amp.style_weight\"]",
         ),
         (
             "choice.toml",
-            "on = \"agile\"\nunset = [\"scheduler.method.amp\"]",
+            "on = \"amp-0.5\"\nunset = [\"scheduler.method.amp\"]",
         ),
         // Nothing is left that pays.
         (
@@ -86,9 +86,9 @@ fn what_unset_leaves_broken_is_blamed_on_it() {
 fn a_preset_that_says_nothing_is_told() {
     let files = Files::new(&[
         ("empty.toml", ""),
-        ("comment.toml", "# on = \"agile\"\n[ppo]\n"),
+        ("comment.toml", "# on = \"g1\"\n[ppo]\n"),
         ("term.toml", "[task.gate.effort]\n"),
-        ("on.toml", "on = \"agile\""),
+        ("on.toml", "on = \"g1\""),
         ("below.toml", "on = \"empty.toml\"\n[ppo]\nepochs = 3"),
         (
             "stays.toml",
