@@ -124,7 +124,8 @@ pub(super) fn sentence(results: &Results) -> String {
         ),
     };
     format!(
-        "By the means of error (m/s), energy (J) and strides off the reference (1/s): {verdict}. AMPCO is {}. No other beats: {}.",
+        "By the means of error (m/s), energy (J) and strides off the reference (1/s): {verdict}. For comparison: {}. \
+         No other beats: {}.",
         told(ours),
         front.join("; ")
     )

@@ -74,7 +74,7 @@ fn bounds(results: &Results) -> Option<String> {
         format!(
             "The bounds of AMPCO's Phase II are {} to {} (medians); in {beyond} of {} one of them is beyond what a \
              style reward can be (0 at the least, and {PERFECT} where motion cannot be told from the reference), and there \
-             Eq. 12 gives neither reward all of the weight.",
+             Eq. 12 never gives one of the two rewards all of the weight.",
             signed(median(&lower)),
             signed(median(&upper)),
             wording::count(bounds.len(), "run")
