@@ -44,7 +44,7 @@ pub use port::{SendOutcome, Wake};
 pub use presence::{Node, TICK};
 pub use reward::{RewardArrival, RewardPublisher, RewardReport, RewardSubscriber};
 pub use rollout::{
-    Entry, Flaw, Ledger, Lists, MAX_TERMS, Rollout, RolloutHeader, RolloutLayout, RolloutLoan,
+    Entry, Flaw, Ledger, Lists, MAX_NAME, MAX_TERMS, Rollout, RolloutHeader, RolloutLayout, RolloutLoan,
     RolloutPublisher, RolloutStep, RolloutStepMut, RolloutSubscriber, RolloutView, RolloutViewMut,
     SendTotals, SentPrint, TermMean, Totals,
 };

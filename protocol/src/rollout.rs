@@ -16,7 +16,7 @@ use iceoryx2::prelude::ZeroCopySend;
 pub use layout::{Flaw, RolloutLayout, RolloutStep, RolloutStepMut, RolloutView, RolloutViewMut};
 pub use ledger::{Entry, Ledger, Totals};
 pub use lists::{Lists, SentPrint};
-pub use terms::{MAX_TERMS, TermMean};
+pub use terms::{MAX_NAME, MAX_TERMS, TermMean};
 
 use crate::error::PortError;
 use crate::port::{Loan, Publisher, Received, SendOutcome, Subscriber, Wake};
@@ -195,6 +195,35 @@ impl RolloutPublisher {
         }
         if outcome != SendOutcome::Delivered {
             tracing::warn!(actor = self.actor, sequence = self.sequence - 1, ?outcome, totals = ?self.totals, "rollout not delivered");
+        }
+        Ok(outcome)
+    }
+
+    /// Sends a filled loan for another: who collected it, in which life and under which number stay as `header` says,
+    /// so that the learner sees the actor and its gaps, and not who carried the rollout here.
+    ///
+    /// # Errors
+    /// [`PortError::Length`] where the header is of another actor or of other sizes than this end was opened for,
+    /// [`PortError::Lists`] where its rows hold something else.
+    pub fn forward(
+        &mut self,
+        mut loan: RolloutLoan,
+        header: RolloutHeader,
+    ) -> Result<SendOutcome, PortError> {
+        let layout = header.layout(self.layout.lists, self.layout.len())?;
+        if layout != self.layout || header.actor != self.actor {
+            return Err(PortError::Length {
+                stream: Rollouts::SPEC.name,
+                expected: self.layout.len(),
+                got: layout.len(),
+            });
+        }
+        *loan.sample.user_header_mut() = header;
+        let start = Instant::now();
+        let outcome = self.port.send(loan.sample)?;
+        self.waited = start.elapsed();
+        if outcome == SendOutcome::Delivered {
+            self.totals.delivered += 1;
         }
         Ok(outcome)
     }

@@ -171,7 +171,19 @@ impl WeightsPublisher {
 
     /// Copies `flat` into shared memory and wakes every actor. Never waits for a reader; who comes
     /// later gets it on this process's next tick.
+    ///
+    /// # Errors
+    /// As [`Self::forward`].
     pub fn broadcast(&self, header: WeightsHeader, flat: &[f32]) -> Result<(), PortError> {
+        let learner = self.learner;
+        self.forward(WeightsHeader { learner, ..header }, flat)
+    }
+
+    /// As [`Self::broadcast`], of the learner that the header names: for one who carries weights from elsewhere.
+    ///
+    /// # Errors
+    /// [`PortError::Length`] where `flat` does not have as many numbers as this end was opened for.
+    pub fn forward(&self, header: WeightsHeader, flat: &[f32]) -> Result<(), PortError> {
         if flat.len() != self.len {
             return Err(PortError::Length {
                 stream: WeightsStream::SPEC.name,
@@ -180,10 +192,7 @@ impl WeightsPublisher {
             });
         }
         let mut loan = self.port.loan(self.len)?;
-        *loan.user_header_mut() = WeightsHeader {
-            learner: self.learner,
-            ..header
-        };
+        *loan.user_header_mut() = header;
         loan.payload_mut().copy_from_slice(flat);
         // No reader is no loss: the history keeps the newest.
         self.port.send(loan)?;

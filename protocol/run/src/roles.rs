@@ -32,6 +32,17 @@ impl Lock {
             let _ = writeln!(self.file, "{AT_WORK}");
         }
     }
+
+    /// Holds the role for somebody who has no process here, such as an actor on another machine: `holder` is written
+    /// where the process id would be.
+    pub fn stand_for(&mut self, holder: &str) {
+        // For readers alone, as above.
+        let _ = self
+            .file
+            .set_len(0)
+            .and_then(|()| self.file.rewind())
+            .and_then(|()| writeln!(self.file, "{holder}"));
+    }
 }
 
 impl Folder {

@@ -51,6 +51,16 @@ impl From<Lists> for SentPrint {
 }
 
 impl SentPrint {
+    /// Its numbers, for one who only carries it.
+    pub fn numbers(&self) -> &[u64; LISTED] {
+        &self.0
+    }
+
+    /// What [`Self::numbers`] gave; none of another count.
+    pub fn from_numbers(numbers: &[u64]) -> Option<Self> {
+        numbers.try_into().ok().map(Self)
+    }
+
     /// How the lists that were sent differ from these, in words; none if they do not.
     pub fn difference(&self, lists: &Lists) -> Option<String> {
         lists.print.difference(&Print(self.0))

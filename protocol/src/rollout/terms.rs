@@ -10,7 +10,7 @@ use super::layout::Flaw;
 /// Most terms that a header can tell.
 pub const MAX_TERMS: usize = 16;
 /// Most bytes of a name.
-const MAX_NAME: usize = 28;
+pub const MAX_NAME: usize = 28;
 /// Groups that a name begins with.
 const GROUPS: [&str; 2] = ["reward/", "gate/"];
 
@@ -38,6 +38,16 @@ impl TermMean {
             term.mean = mean;
         }
         terms
+    }
+
+    /// Its name as it is sent, filled up with zeros, and its mean, sound or not: for one who only carries it.
+    pub fn parts(&self) -> ([u8; MAX_NAME], f32) {
+        (self.name, self.mean)
+    }
+
+    /// What [`Self::parts`] gave.
+    pub fn from_parts(name: [u8; MAX_NAME], mean: f32) -> Self {
+        Self { name, mean }
     }
 
     /// Name and mean; none where there is no term. An error holds a number that cannot be, or 0 where the name cannot.
