@@ -16,6 +16,7 @@ mod features;
 mod floors;
 mod group;
 mod harness;
+mod hosts;
 mod imports;
 mod isolation;
 mod licences;

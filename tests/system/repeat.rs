@@ -50,7 +50,7 @@ fn another_seed_is_another_run() {
 /// Every value that an exact continuation depends on is the same in two runs: metrics, and all of
 /// the checkpoint of iteration `iteration`, networks, optimisers, normalisers, replay, generators and
 /// robots.
-fn assert_same(runs: &Runs, one: &str, other: &str, iteration: u64) {
+pub(crate) fn assert_same(runs: &Runs, one: &str, other: &str, iteration: u64) {
     let lines = |name: &str| -> Vec<_> {
         metrics(&runs.run(name))
             .into_iter()
@@ -80,7 +80,7 @@ fn assert_same(runs: &Runs, one: &str, other: &str, iteration: u64) {
 }
 
 /// On a busy machine nobody is to go on without the scheduler or an actor: that would be another run.
-const PATIENT: [&str; 4] = [
+pub(crate) const PATIENT: [&str; 4] = [
     "--set",
     "run.deadlines.directive_seconds=60",
     "--set",

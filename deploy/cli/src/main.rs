@@ -35,6 +35,7 @@ Examples:
   ampco stages pushed                             runs in a row, each from the one before
   ampco status                                    the newest run: how it is going
   ampco actor --run walk                          lend another core to a running group
+  ampco join node1:7000 --file walk.join          simulate for a run on another machine
   ampco evaluate walk --command 0.8,0,0 --json    how well the policy walks
   ampco evaluate walk --suite standard            everything it should be able to do, as a report
   ampco judge my-run walk --out judge             which walks more like the reference, by a fresh judge
@@ -63,6 +64,7 @@ enum Command {
     Stages(stages::Stages),
     Config(config::Show),
     Actor(actor::AddActor),
+    Join(gate::JoinRun),
     Status(status::Status),
     Evaluate(judge::Evaluate),
     Judge(judge::Fresh),
@@ -84,6 +86,7 @@ fn main() -> ExitCode {
         Command::Stages(stages) => stages.run(),
         Command::Config(config) => config.run(),
         Command::Actor(actor) => actor.run(),
+        Command::Join(join) => join.run(),
         Command::Status(status) => status.run(),
         Command::Evaluate(evaluate) => evaluate.run(),
         Command::Judge(judge) => judge.run(),

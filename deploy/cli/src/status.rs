@@ -6,6 +6,7 @@ mod watch;
 
 use anyhow::Result;
 use clap::Args;
+use gate::known::Known;
 use run::{Folder, RunConfig, metrics};
 use serde_json::{Value, json};
 use terminal::figures::{self, Figures, Outlook};
@@ -53,7 +54,8 @@ fn status(folder: &Folder) -> Result<Value> {
         .map(|(role, pid)| {
             (
                 role.clone(),
-                pid.parse().map_or(Value::Null, |pid: u32| json!(pid)),
+                // An actor on another machine has none here: its holder says where it is.
+                pid.parse().map_or_else(|_| json!(pid), |pid: u32| json!(pid)),
             )
         })
         .collect();
@@ -74,6 +76,7 @@ fn status(folder: &Folder) -> Result<Value> {
         "processes": processes,
         "checkpoints": checkpoints.list(),
         "newest_checkpoint": checkpoints.list().last().map(|at| checkpoints.path(*at)),
+        "hosts": Known::now(folder)?,
         "metrics": newest,
     }))
 }
@@ -111,6 +114,7 @@ fn describe(folder: &Folder, status: &Value) -> Result<String> {
     if !processes.is_empty() {
         lines.push(format!("processes: {}", processes.join(", ")));
     }
+    lines.extend(Known::now(folder)?.iter().flat_map(Known::lines));
     let checkpoints = status["checkpoints"].as_array().map_or(0, Vec::len);
     lines.push(match status["newest_checkpoint"].as_str() {
         Some(path) => format!("{}, the newest {path}", count(checkpoints, "checkpoint")),

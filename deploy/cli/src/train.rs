@@ -4,6 +4,7 @@ mod from;
 mod pictures;
 mod resumed;
 
+use std::net::SocketAddr;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
@@ -16,7 +17,7 @@ use motion::quality::{Severity, line, severity};
 use protocol::RolloutLayout;
 use run::motion::Print;
 use run::{Config, Folder};
-use supervise::{Ending, Launch};
+use supervise::{Ending, Launch, Members};
 use terminal::Place;
 use terminal::console::say;
 use terminal::failure::usage;
@@ -42,6 +43,12 @@ pub(crate) struct Train {
     /// Actor processes [default: one per core]
     #[arg(long, value_name = "N")]
     actors: Option<u32>,
+    /// Let other machines take part: `ampco join` there, with the file from the run's join/ folder
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    listen: Option<String>,
+    /// Of the actors so many on this machine, the others are to join [default: all]
+    #[arg(long, value_name = "N", requires = "listen")]
+    here: Option<usize>,
     /// End at this iteration, counted from the run's first
     #[arg(long, value_name = "N")]
     iterations: Option<u32>,
@@ -69,12 +76,26 @@ impl Train {
     pub(crate) fn run(&self) -> Result<()> {
         // A soak or a study starts us as its child, and takes us along when it ends.
         protocol::end_with_supervisor()?;
+        if let Some(listen) = &self.listen
+            && listen.parse::<SocketAddr>().is_err()
+        {
+            return Err(usage(format!(
+                "--listen {listen}: give ADDRESS:PORT, as in 0.0.0.0:7000 for every network of this machine"
+            )));
+        }
         let ready = if self.resume {
             self.resumed()?
         } else {
             self.new_run()?
         };
         let (folder, resolved) = (&ready.folder, &ready.resolved);
+        let here = self.here.unwrap_or(resolved.fleet.actors);
+        if here > resolved.fleet.actors {
+            return Err(usage(format!(
+                "--here {here}: the run has {}",
+                count(resolved.fleet.actors, "actor")
+            )));
+        }
         let _supervisor = folder.lock("supervisor")?;
         if !self.resume && has_history(folder) {
             // Looked at again under the lock: another start may have been quicker.
@@ -102,6 +123,10 @@ impl Train {
             run: &resolved.run,
             fleet: &resolved.fleet,
             resume: !folder.checkpoints().list().is_empty(),
+            members: match &self.listen {
+                None => Members::All,
+                Some(listen) => Members::Hosts { here, listen },
+            },
         })?;
         if ending == Ending::InOrder && !self.no_pictures {
             pictures::draw(&self.place, folder);

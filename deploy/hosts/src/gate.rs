@@ -115,6 +115,18 @@ pub fn run(run_dir: &Path, listen: &str, here: u32) -> Result<()> {
     Ok(())
 }
 
+/// Makes the passes of run `run` in `folder`, for a run that is still to begin: whoever has them in its own folder then
+/// listens with them.
+///
+/// # Errors
+/// Files that cannot be written.
+pub fn passes(folder: &Path, run: &str) -> Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    let passes = Passes::of(folder, run)?;
+    eprintln!("{}", passes.carried.display());
+    Ok(())
+}
+
 fn write(folder: &Folder, known: &crate::known::Known, keep: bool) {
     let mut done = known.write(folder.path());
     if keep && done.is_ok() && !known.hosts.is_empty() {

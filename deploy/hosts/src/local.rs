@@ -6,7 +6,8 @@ use anyhow::{Context, Result};
 use hosts::Lean;
 use observation::{ObservationConfig, Tables};
 use protocol::{Lists, RolloutLayout};
-use run::{Config, FleetConfig, RunConfig};
+use run::journal::{Entry, Journal};
+use run::{Config, FleetConfig, Folder, RunConfig};
 
 /// What both ends read.
 #[derive(Debug)]
@@ -19,6 +20,8 @@ pub(crate) struct Local {
     pub(crate) patience: Duration,
     /// How long processes have after the order to end.
     pub(crate) stop: Duration,
+    /// Whether every rollout is written down.
+    pub(crate) journal: bool,
 }
 
 impl Local {
@@ -37,7 +40,17 @@ impl Local {
             actors: fleet.actors,
             patience: Duration::from_secs_f64(run.deadlines.send_seconds),
             stop: Duration::from_secs_f64(run.deadlines.stop_seconds),
+            journal: run.journal,
         })
+    }
+
+    /// Writes down who passes rollouts of these actors on from now on.
+    pub(crate) fn note(&self, folder: &Folder, role: &str, numbers: &[u32]) -> Result<()> {
+        let mut journal = Journal::open(&folder.logs(), role, self.journal)?;
+        for number in numbers {
+            journal.write(|| Entry::Passing(*number));
+        }
+        Ok(())
     }
 
     pub(crate) fn layout(&self) -> RolloutLayout {

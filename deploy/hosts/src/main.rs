@@ -27,6 +27,15 @@ enum End {
         #[arg(long, default_value_t = 0)]
         here: u32,
     },
+    /// Makes the files by which a run and its hosts know each other, before the run begins
+    Passes {
+        /// Where: in its folder join/
+        #[arg(long)]
+        folder: PathBuf,
+        /// Name of the run
+        #[arg(long)]
+        run: String,
+    },
     /// On another machine: stands in for the learner
     Carrier {
         /// Folder that `ampco join` has made
@@ -42,6 +51,7 @@ fn main() -> ExitCode {
             listen,
             here,
         } => ("gate", gate::gate::run(&run_dir, &listen, here)),
+        End::Passes { folder, run } => ("passes", gate::gate::passes(&folder, &run)),
         End::Carrier { run_dir } => ("carrier", gate::carrier::run(&run_dir)),
     };
     match done {

@@ -21,8 +21,10 @@ const GRACE: Duration = Duration::from_secs(5);
 impl Group<'_> {
     /// Ends everyone in order: the learner first, since it tells the actors to save.
     pub(super) async fn end(mut self, reason: Reason, stop: &mut Stop) -> Result<Ending> {
+        let guests = self.launch.members.are_guests();
         if !matches!(reason, Reason::Complete) {
             self.console.say(match &reason {
+                Reason::Asked if guests => "leaving: finishing the rollouts (once more to kill at once)",
                 Reason::TimeUp => "time is up: finishing the iteration",
                 Reason::Failed(_) | Reason::GivenUp(..) => "ending the group",
                 _ => "ending: finishing the iteration (once more to kill at once)",
@@ -31,6 +33,11 @@ impl Group<'_> {
         let patience = Duration::from_secs_f64(self.launch.run.deadlines.stop_seconds);
         for child in &mut self.children {
             child.retire();
+        }
+        if guests {
+            // What they have begun still goes to the learner.
+            self.signal(Signal::TERM, is_actor);
+            self.until_ended(patience, stop, is_actor).await?;
         }
         self.signal(Signal::TERM, |role| role == LEARNER);
         let saved = self
@@ -148,7 +155,8 @@ impl Group<'_> {
             Reason::Failed(_) | Reason::GivenUp(..) => "failed",
         };
         let run = self.launch.folder.name();
-        let mut report = format!("run {run} {what} after {}", clock(self.started.elapsed()));
+        let whose = if self.launch.members.are_guests() { "host of run" } else { "run" };
+        let mut report = format!("{whose} {run} {what} after {}", clock(self.started.elapsed()));
         if let Some(figures) = &self.pace.newest {
             report += &format!(
                 " at iteration {}, {}",
@@ -157,6 +165,8 @@ impl Group<'_> {
             );
         }
         report += &match self.launch.folder.checkpoints().list().last() {
+            // They are the learner's.
+            _ if self.launch.members.are_guests() => String::new(),
             Some(iteration) => format!("; last checkpoint {iteration:08}"),
             None => "; no checkpoint".to_owned(),
         };

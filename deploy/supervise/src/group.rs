@@ -17,7 +17,7 @@ use crate::child::{Child, Verdict, Words};
 use crate::roles::{
     LEARNER, SCHEDULER, children, has_checkpoint, is_actor, learner_arguments, log,
 };
-use crate::{LOOK, Launch, Reason, Stop, programs};
+use crate::{LOOK, Launch, Members, Reason, Stop, programs};
 
 /// Between two looks at the metrics.
 const GLANCE: Duration = Duration::from_millis(500);
@@ -92,7 +92,9 @@ impl<'a> Group<'a> {
             let child = &mut self.children[index];
             let end = programs::describe(status);
             match verdict {
-                Verdict::Done if child.role == LEARNER => return Ok(Some(Reason::Complete)),
+                Verdict::Done if child.role == self.launch.members.head() => {
+                    return Ok(Some(Reason::Complete));
+                }
                 Verdict::Done if child.role == SCHEDULER => {
                     child.start_again_at(now);
                     self.console.say("scheduler ended; starting it again");
@@ -169,6 +171,14 @@ impl<'a> Group<'a> {
     }
 
     pub(super) fn show(&mut self, now: Instant) {
+        if let Members::Guests { shown, .. } = self.launch.members {
+            let path = self.launch.folder.path().join(shown);
+            let line = std::fs::read_to_string(path).unwrap_or_default();
+            let alive = count(self.alive(is_actor).len(), "actor");
+            let time = clock(now - self.started);
+            self.console.show(&format!("{line} · {alive} alive · {time}"), now);
+            return;
+        }
         let outlook = Outlook {
             iterations: self.launch.run.iterations,
             actors_alive: self.alive(is_actor).len(),

@@ -38,12 +38,50 @@ pub struct Launch<'a> {
     pub fleet: &'a FleetConfig,
     /// Whether the learner goes on from a checkpoint.
     pub resume: bool,
+    /// Who is started on this machine.
+    pub members: Members<'a>,
+}
+
+/// Who is started on this machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Members<'a> {
+    /// Learner, scheduler and all actors.
+    All,
+    /// Learner, scheduler, a gate for other machines, and the first of the actors.
+    Hosts {
+        /// How many of the actors.
+        here: usize,
+        /// Where the gate listens, ADDRESS:PORT.
+        listen: &'a str,
+    },
+    /// A carrier and some of the actors, for a learner on another machine.
+    Guests {
+        /// Numbers of the actors.
+        numbers: &'a [u32],
+        /// Name of the file in the run's folder whose text is shown.
+        shown: &'a str,
+    },
+}
+
+impl Members<'_> {
+    /// The role whose end is the group's.
+    pub(crate) fn head(&self) -> &'static str {
+        match self {
+            Self::All | Self::Hosts { .. } => roles::LEARNER,
+            Self::Guests { .. } => roles::CARRIER,
+        }
+    }
+
+    /// Whether the learner is on another machine.
+    pub(crate) fn are_guests(&self) -> bool {
+        matches!(self, Self::Guests { .. })
+    }
 }
 
 /// Why the group ends.
 #[derive(Debug)]
 enum Reason {
-    /// The learner has done all iterations.
+    /// The learner has done all iterations, or the run has ended on the learner's machine.
     Complete,
     /// The minutes are over.
     TimeUp,

@@ -12,7 +12,7 @@ use rustix::process::{Pid, Signal, kill_process};
 use tokio::time::sleep;
 
 use super::LOOK;
-use super::roles::{LEARNER, SCHEDULER, is_actor};
+use super::roles::is_member;
 
 /// Orphans get this long to save what they have, and then no more: a checkpoint is there anyway.
 const GRACE: Duration = Duration::from_millis(1500);
@@ -69,7 +69,7 @@ pub(super) async fn clear(folder: &Folder, domain: &Domain) -> Result<()> {
 
 fn orphans(folder: &Folder) -> Result<Vec<(String, String)>> {
     let mut holders = folder.holders().context("looking for an earlier group")?;
-    holders.retain(|(role, _)| matches!(role.as_str(), LEARNER | SCHEDULER) || is_actor(role));
+    holders.retain(|(role, _)| is_member(role));
     Ok(holders)
 }
 

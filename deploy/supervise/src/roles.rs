@@ -8,41 +8,68 @@ use run::Folder;
 use tokio::sync::mpsc::UnboundedSender;
 
 use crate::child::{Child, Words};
-use crate::{Launch, programs};
+use crate::{Launch, Members, programs};
 
 pub(crate) const LEARNER: &str = "learner";
 pub(crate) const SCHEDULER: &str = "scheduler";
+/// Lets other machines in.
+pub(crate) const GATE: &str = "gate";
+/// Stands in for a learner on another machine.
+pub(crate) const CARRIER: &str = "carrier";
+/// The program of the last two.
+const HOSTS: &str = "ampco-gate";
 
 pub(crate) fn is_actor(role: &str) -> bool {
     role.starts_with("actor-")
 }
 
-/// Scheduler, learner and actors of a launch; any order would do.
+/// Whether a process of a role belongs to a group; others only look.
+pub(crate) fn is_member(role: &str) -> bool {
+    matches!(role, LEARNER | SCHEDULER | GATE | CARRIER) || is_actor(role)
+}
+
+/// Who is started of a launch; any order would do.
 pub(crate) fn children(launch: &Launch<'_>, words: &UnboundedSender<Words>) -> Result<Vec<Child>> {
-    let child = |role: String, program: &str, arguments| -> Result<Child> {
+    let child = |role: &str, program: &str, arguments: Vec<OsString>| -> Result<Child> {
         Ok(Child::new(
-            role,
+            role.to_owned(),
             programs::find(program)?,
             arguments,
             words.clone(),
         ))
     };
-    let mut children = vec![
-        child(
-            SCHEDULER.to_owned(),
-            "ampco-scheduler",
-            run_dir(launch.folder),
-        )?,
-        child(
-            LEARNER.to_owned(),
-            "ampco-learner",
-            learner_arguments(launch, launch.resume),
-        )?,
-    ];
-    for index in 0..launch.fleet.actors {
+    let with = |words: &[&str]| -> Vec<OsString> {
         let mut arguments = run_dir(launch.folder);
-        arguments.extend(["--index".into(), index.to_string().into()]);
-        children.push(child(format!("actor-{index}"), "ampco-actor", arguments)?);
+        arguments.extend(words.iter().map(OsString::from));
+        arguments
+    };
+    let end = |end: &str, words: &[&str]| -> Vec<OsString> {
+        let mut arguments = vec![OsString::from(end)];
+        arguments.extend(with(words));
+        arguments
+    };
+    let mut children = Vec::new();
+    if !launch.members.are_guests() {
+        children.push(child(SCHEDULER, "ampco-scheduler", with(&[]))?);
+        let arguments = learner_arguments(launch, launch.resume);
+        children.push(child(LEARNER, "ampco-learner", arguments)?);
+    }
+    let actors: Vec<u32> = match launch.members {
+        Members::All => (0..launch.fleet.actors as u32).collect(),
+        Members::Hosts { here, listen } => {
+            let first = here.to_string();
+            let arguments = end(GATE, &["--listen", listen, "--here", &first]);
+            children.push(child(GATE, HOSTS, arguments)?);
+            (0..here as u32).collect()
+        }
+        Members::Guests { numbers, .. } => {
+            children.push(child(CARRIER, HOSTS, end(CARRIER, &[]))?);
+            numbers.to_vec()
+        }
+    };
+    for number in actors {
+        let arguments = with(&["--index", &number.to_string()]);
+        children.push(child(&format!("actor-{number}"), "ampco-actor", arguments)?);
     }
     Ok(children)
 }

@@ -240,6 +240,7 @@ impl Line {
 fn said(status: &Status) -> Option<CallError> {
     let words = || status.message().to_owned();
     match status.code() {
+        // The last two are of messages that are too long or cannot be read.
         Code::FailedPrecondition
         | Code::InvalidArgument
         | Code::Unimplemented

@@ -31,6 +31,8 @@ pub enum Entry {
     /// A learner has received a rollout: its number, the iteration it gathers for, what it did with
     /// the rollout, one of [`FATES`].
     Received(u64, u64, Key, String),
+    /// Somebody between an actor of another machine and the learner begins to pass its rollouts on: a gate or a carrier.
+    Passing(u32),
 }
 
 /// What a send can come to: the learner's stream has it; nobody listened; the stream stayed full; the
@@ -53,6 +55,7 @@ impl Entry {
             Self::Received(learner, iteration, (actor, life, number), fate) => {
                 format!("received {learner} {iteration} {actor} {life} {number} {fate}\n")
             }
+            Self::Passing(actor) => format!("passing {actor}\n"),
         }
     }
 
@@ -81,6 +84,7 @@ impl Entry {
                 let (learner, iteration) = (learner.parse().ok()?, iteration.parse().ok()?);
                 Self::Received(learner, iteration, key(rest)?, (*fate).to_owned())
             }
+            ["passing", actor] => Self::Passing(actor.parse().ok()?),
             _ => return None,
         })
     }

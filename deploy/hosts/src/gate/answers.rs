@@ -134,6 +134,9 @@ impl Gate {
             first: self.first,
         };
         let numbers = lock(&self.seats).join(&from.to_string(), join, &house)?;
+        if let Err(error) = self.local.note(&self.folder, "gate", &numbers) {
+            warn!(error = format!("{error:#}"), "the journal cannot be written");
+        }
         let mut notices = Vec::new();
         let ours = hosts::features();
         if ours != join.features {

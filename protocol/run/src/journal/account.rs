@@ -8,6 +8,10 @@ use super::{Entry, Key};
 /// buffer, one that it has taken out, one that is being sent.
 const IN_FLIGHT: usize = 4;
 
+/// Most rollouts of one actor that are lost when a process ends that passes them on: two in the buffer of each of its
+/// ends, one in its hands, one in its queue, one on its way.
+const PASSING: usize = 7;
+
 /// What all rollouts came to.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Account {
@@ -15,8 +19,8 @@ pub struct Account {
     pub sent: u64,
     /// Learned from, once, by what the run goes on from.
     pub used: u64,
-    /// Not used, by reason: those of [`super::OUTCOMES`] and [`super::FATES`]; `unread` when learner or
-    /// actor ended before it was read; `rolled_back` when it was learned from and the learner
+    /// Not used, by reason: those of [`super::OUTCOMES`] and [`super::FATES`]; `unread` when learner, actor or one who
+    /// passes rollouts on ended before it was read; `rolled_back` when it was learned from and the learner
     /// killed before its next checkpoint.
     pub dropped: BTreeMap<String, u64>,
     /// Learned from twice, or gone without any of these reasons.
@@ -36,6 +40,7 @@ pub fn account(journals: &[Vec<Entry>]) -> Account {
     let lives = Lives::of(journals);
     let mut rollouts: BTreeMap<Key, Known> = BTreeMap::new();
     let mut sent = BTreeSet::new();
+    let mut passers: BTreeMap<u32, usize> = BTreeMap::new();
     for entry in journals.iter().flatten() {
         match entry {
             Entry::Sending(key) => {
@@ -51,6 +56,7 @@ pub fn account(journals: &[Vec<Entry>]) -> Account {
                 known.fates.push((life, lasts, fate.clone()));
             }
             Entry::Begun(..) => {}
+            Entry::Passing(actor) => *passers.entry(*actor).or_default() += 1,
         }
     }
     let mut account = Account {
@@ -69,7 +75,8 @@ pub fn account(journals: &[Vec<Entry>]) -> Account {
         }
     }
     for (gap, count) in unread {
-        let excused = count.min(gap.room(lives.0.len()));
+        let passers = passers.get(&gap.actor).copied().unwrap_or(0);
+        let excused = count.min(gap.room(lives.0.len()) + passers * PASSING);
         account.drop("unread", excused as u64);
         account.uncounted += (count - excused) as u64;
     }

@@ -1,0 +1,54 @@
+//! Where the actors are changes no bit.
+
+use super::Spread;
+use crate::harness::{Process, metrics, until};
+use crate::repeat::{PATIENT, assert_same};
+
+fn ended(mut process: Process) {
+    assert!(process.end().success(), "{}", process.stderr.text());
+}
+
+#[test]
+fn actors_on_other_machines_make_the_same_weights_also_over_a_stop_and_a_resume() {
+    let spread = Spread::new();
+    let train = |iterations: &'static str| {
+        let arguments = ["--actors", "3", "--iterations", iterations];
+        [&arguments[..], &PATIENT[..]].concat()
+    };
+    let whole = spread.runs.train("whole", &train("8"));
+    ended(whole);
+
+    let group = spread.train("spread", 1, &train("8"));
+    let host = spread.join("spread", 2);
+    ended(group);
+    let said = host.stderr.text();
+    ended(host);
+    assert_same(&spread.runs, "whole", "spread", 8);
+    assert!(said.contains("joined run spread"), "{said}");
+    assert!(
+        said.contains("actors 1, 2 × ") && !said.contains("other processors"),
+        "{said}"
+    );
+
+    // All actors elsewhere, on two hosts, and a stop in the middle.
+    let group = spread.train("halves", 0, &train("4"));
+    let hosts = [spread.join("halves", 2), spread.join("halves", 1)];
+    ended(group);
+    hosts.into_iter().for_each(ended);
+    let lines = metrics(&spread.runs.run("halves"));
+    assert_eq!(lines.len(), 4);
+    let group = spread.resume("halves", 0, &["--iterations", "8"]);
+    let hosts = [spread.join("halves", 1), spread.join("halves", 2)];
+    ended(group);
+    hosts.into_iter().for_each(ended);
+    assert_same(&spread.runs, "whole", "halves", 8);
+    // Nothing is left on the machine of the actors.
+    for host in spread.hosts() {
+        let domain = protocol::Domain::for_run(&host).expect("a domain");
+        let left = until("its memory to be removed", || {
+            let left = domain.leftovers().expect("readable");
+            left.is_empty().then_some(left)
+        });
+        assert!(left.is_empty());
+    }
+}
