@@ -87,7 +87,7 @@ fn plan(arguments: &[String], place: &Path, trained: u32, missing: &BTreeSet<Str
         }
         "motions" if short[1] == "import" && !place.join(&short[2]).exists() => return made(),
         // They take their time, or a second terminal.
-        "bench" | "judge" | "soak" | "actor" => return made(),
+        "bench" | "judge" | "soak" | "actor" | "join" => return made(),
         _ => {}
     }
     Plan::Run(short)

@@ -120,8 +120,8 @@ impl Carrier {
                 }
             }
         };
-        if let Some(version) = last {
-            self.until_saved(version).await;
+        if let Some((version, _)) = &last {
+            self.until_saved(*version).await;
         }
         // What the actors sent is in the queues by then; each is sent to its end.
         intake.finish();
@@ -135,9 +135,9 @@ impl Carrier {
             Ok(drained) => drained?,
             Err(_) => warn!("the gate is away: the last rollouts are lost"),
         }
-        if let Some(version) = last {
+        if let Some((version, _)) = &last {
             for actor in &self.stay.numbers {
-                self.send_robots(*actor, version).await?;
+                self.send_robots(*actor, *version).await?;
             }
         }
         let leave = Leave {

@@ -12,7 +12,7 @@ pub use discriminator::{DiscriminatorConfig, LossKind};
 pub use policy::{ExplorationConfig, ExplorationKind, PolicyConfig};
 pub(crate) use policy::{LAST_GAIN, LEARNED_SIGMA, OBSERVATION_FLOOR};
 pub(crate) use ppo::{GRADIENT_NORM, GREATEST_RATE, KL_BAND, LEAST_RATE, RATE_FACTOR};
-pub use ppo::{PpoConfig, RateSchedule};
+pub use ppo::{OffPolicy, PpoConfig, RateSchedule};
 
 use std::fmt::Debug;
 use vocabulary::{Invalid, Ramp, Section};

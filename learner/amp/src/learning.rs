@@ -232,7 +232,7 @@ impl Learning {
         let weighting = (self.clock)() - moments_known;
         let reward_mean = moments(&self.scratch.rewards)[0];
         let scored = (self.clock)();
-        self.estimate(batch)?;
+        self.estimate(batch, &sigma)?;
         let explained_variance = self.explained_variance();
         let estimated = (self.clock)();
         let ppo = self.improve(batch, &sigma)?;

@@ -18,6 +18,7 @@
 //! | --- | --- |
 //! | what rollouts bring | [`batch`] |
 //! | generalised advantage estimation | [`gae`] |
+//! | the same of rollouts that an older policy made | [`vtrace`] |
 //! | the clipped surrogate and its companions | [`surrogate`] |
 //! | one PPO update | [`ppo`] |
 //! | one discriminator update, and the transitions it remembers | [`discrimination`], [`replay`] |
@@ -46,6 +47,7 @@ pub mod saturation;
 mod saved;
 pub mod style;
 pub mod surrogate;
+pub mod vtrace;
 pub mod window;
 
 pub use batch::{Batch, Segment, SegmentMut};

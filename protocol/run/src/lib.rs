@@ -10,8 +10,9 @@
 //! | `events.out.tfevents.…` | the same figures for TensorBoard, a file per start | the learner | [`events`] |
 //! | `checkpoints/<iteration>/` | everything that an exact continuation needs | learner, actors | [`checkpoint`] |
 //! | `evaluation/<suite>/` | reports and figures | `ampco evaluate` | – |
+//! | `join/`, `hosts.json`, `hosts.jsonl` | by what other machines join, and which have | the gate | – |
 //! | `logs/<process>.log` | the events of one process | that process | [`log`] |
-//! | `logs/*.rollouts` | what became of every rollout, where `run.journal` asks for it | learner, actors | [`journal`] |
+//! | `logs/*.rollouts` | what became of every rollout, where `run.journal` asks for it | learner, actors, who passes rollouts on | [`journal`] |
 //! | `<role>.lock` | who is alive in this run | that process | [`roles`] |
 //!
 //! It is separate from the shells because all of them and the command line share it, and it knows neither messages nor

@@ -93,7 +93,7 @@ const TABLE: &[(&str, Rule, &[&str])] = &[
             "symmetry_share",
         ],
     ),
-    ("ppo", Free, &["threads"]),
+    ("ppo", Free, &["off_policy", "threads"]),
     ("discriminator", Fixed(SHAPE), &["frames", "hidden"]),
     (
         "discriminator",

@@ -18,8 +18,9 @@ const PATIENCE: Duration = Duration::from_secs(60);
 pub(crate) const GIVEN: &str = "given";
 
 impl Carrier {
-    /// Gives the actors the newest weights, until they are told to stop; the version with which they were.
-    pub(super) async fn poll(&self, node: &Node) -> Result<u64> {
+    /// Gives the actors the newest weights, until they are told to stop; the version with which they were, and the end of
+    /// the stream, which is to be kept until they have heard it.
+    pub(super) async fn poll(&self, node: &Node) -> Result<(u64, WeightsPublisher)> {
         let mut publisher: Option<(usize, WeightsPublisher)> = None;
         let mut has = Vec::new();
         loop {
@@ -62,7 +63,8 @@ impl Carrier {
             self.counted.weights(header.version);
             if header.order() == Some(WeightsOrder::SaveThenStop) {
                 info!(version = header.version, "the run ends");
-                return Ok(header.version);
+                let (_, publisher) = publisher.context("weights were given")?;
+                return Ok((header.version, publisher));
             }
         }
     }

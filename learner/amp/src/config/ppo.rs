@@ -39,6 +39,9 @@ pub struct PpoConfig {
     pub symmetry_weight: f32,
     /// Share of each minibatch that it is taken over; the critic learns from those rows mirrored.
     pub symmetry_share: f32,
+    /// How rollouts count that an older policy made, as overlapped runs have them. Default `"ignored"`; `"v_trace"` for long
+    /// lags, as between machines.
+    pub off_policy: OffPolicy,
     /// Threads that rows are divided among. Sums are made in their order, so that results depend on this number and not
     /// on the machine.
     pub threads: usize,
@@ -54,6 +57,16 @@ pub enum RateSchedule {
     PerIteration,
     /// Before every minibatch's step.
     PerMinibatch,
+}
+
+/// Choices of [`PpoConfig::off_policy`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum OffPolicy {
+    /// As if the present policy had made them: PPO's clipped ratio alone tells the two apart.
+    Ignored,
+    /// Advantages and returns are corrected ([`crate::vtrace`]).
+    VTrace,
 }
 
 /// The rate follows the KL divergence when that leaves [target / band, target · band].
@@ -83,6 +96,7 @@ impl Default for PpoConfig {
             critic_first: 0.0,
             symmetry_weight: 0.0,
             symmetry_share: 0.25,
+            off_policy: OffPolicy::Ignored,
             threads: 2,
         }
     }

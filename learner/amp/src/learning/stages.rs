@@ -4,7 +4,7 @@
 
 use super::Learning;
 use crate::batch::Batch;
-use crate::config::REPLAY_SHARE;
+use crate::config::{OffPolicy, REPLAY_SHARE};
 use crate::discrimination;
 use crate::error::Fault;
 use crate::gae::{self, Returns};
@@ -13,6 +13,7 @@ use crate::ppo::{PpoFigures, Rows};
 use crate::report::moments;
 use crate::robot::Mirror;
 use crate::style::style_reward;
+use crate::vtrace;
 use crate::window::{Cut, Past, repeat_oldest};
 use networks::Scaling;
 use rand::RngExt;
@@ -36,6 +37,10 @@ pub(super) struct Scratch {
     /// How widely each row was tried.
     pub(super) exploration: Vec<f32>,
     pub(super) advantages: Vec<f32>,
+    /// How far values are off what the critic is to say; empty where those are the advantages.
+    pub(super) errors: Vec<f32>,
+    /// ln π/μ of each row, where advantages are corrected by it.
+    pub(super) log_ratios: Vec<f32>,
     pub(super) returns: Vec<f32>,
     pub(super) experts: Vec<f32>,
     pub(super) policy: Vec<f32>,
@@ -103,7 +108,7 @@ impl Learning {
     }
 
     /// Values, advantages and returns.
-    pub(super) fn estimate(&mut self, batch: &Batch) -> Result<(), Fault> {
+    pub(super) fn estimate(&mut self, batch: &Batch, sigma: &[f32]) -> Result<(), Fault> {
         let threads = self.config.ppo.threads;
         let Scratch {
             rewards,
@@ -113,6 +118,9 @@ impl Learning {
             last_values,
             timeout_values,
             advantages,
+            errors,
+            log_ratios,
+            exploration,
             returns,
             scaled,
             ..
@@ -172,6 +180,20 @@ impl Learning {
             timeout_values[*robot] = value;
         }
 
+        let corrected = self.config.ppo.off_policy == OffPolicy::VTrace;
+        log_ratios.clear();
+        errors.clear();
+        if corrected {
+            scaled.clear();
+            let (shape, actor) = (ppo.actor_shape(), ppo.actor());
+            inference::outputs(shape, actor, &seen.scaled, threads, scaled);
+            exploration.clear();
+            batch.exploration(exploration);
+            let tried = (batch.actions.as_slice(), scaled.as_slice());
+            vtrace::log_ratios(tried, sigma, exploration, &batch.log_probs, log_ratios);
+            errors.resize(batch.rows(), 0.0);
+        }
+
         let scale = self.config.ppo.reward_scale;
         rewards.iter_mut().for_each(|reward| *reward *= scale);
         advantages.clear();
@@ -181,22 +203,26 @@ impl Learning {
             let rows = row..row + segment.rows();
             let robots = robot..robot + segment.environments;
             (row, robot) = (rows.end, robots.end);
-            gae::advantages(
-                *segment,
-                Returns {
-                    rewards: &rewards[rows.clone()],
-                    values: &values[rows.clone()],
-                    ends: &batch.ends[rows.clone()],
-                    last_values: &last_values[robots.clone()],
-                    timeout_values: &timeout_values[robots],
-                },
-                self.config.ppo.gamma,
-                self.config.ppo.lambda,
-                &mut advantages[rows],
-            );
+            let from = Returns {
+                rewards: &rewards[rows.clone()],
+                values: &values[rows.clone()],
+                ends: &batch.ends[rows.clone()],
+                last_values: &last_values[robots.clone()],
+                timeout_values: &timeout_values[robots],
+            };
+            let (gamma, lambda) = (self.config.ppo.gamma, self.config.ppo.lambda);
+            let out = &mut advantages[rows.clone()];
+            if corrected {
+                let ratios = &log_ratios[rows.clone()];
+                let errors = &mut errors[rows];
+                vtrace::advantages(*segment, from, ratios, (gamma, lambda), out, errors);
+            } else {
+                gae::advantages(*segment, from, gamma, lambda, out);
+            }
         }
+        let errors = if corrected { &*errors } else { &*advantages };
         returns.clear();
-        returns.extend(advantages.iter().zip(&*values).map(|(a, v)| a + v));
+        returns.extend(errors.iter().zip(&*values).map(|(a, v)| a + v));
         Fault::unless_finite(returns, |row| format!("return of row {row}"))
     }
 
@@ -207,7 +233,11 @@ impl Learning {
         if returns == 0.0 {
             return 0.0;
         }
-        1.0 - variance(&self.scratch.advantages) / returns
+        let errors = match self.scratch.errors.as_slice() {
+            [] => self.scratch.advantages.as_slice(),
+            errors => errors,
+        };
+        1.0 - variance(errors) / returns
     }
 
     pub(super) fn improve(&mut self, batch: &Batch, sigma: &[f32]) -> Result<PpoFigures, Fault> {

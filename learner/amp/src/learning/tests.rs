@@ -4,6 +4,7 @@ mod critic;
 mod saved;
 
 use super::*;
+use crate::config::OffPolicy;
 use crate::robot::tests::{ACTION, OBSERVATION, simple};
 use rand::RngExt;
 use vocabulary::Cause;
@@ -96,6 +97,31 @@ fn the_same_inputs_give_the_same_bits() {
     assert!(first.iter().all(|x| x.is_finite()));
     run(&mut a, 4, 5);
     assert_ne!(first, a.policy_flat());
+}
+
+#[test]
+fn v_trace_changes_what_an_older_policy_made_and_hardly_what_the_present_one_did() {
+    let returns = |off_policy, older: f32| {
+        let mut config = config();
+        config.ppo.off_policy = off_policy;
+        let mut learning = Learning::new(config, simple(), 11).expect("usable");
+        let mut batch = batch(&learning, 0);
+        // As if the policy that acted had been so much surer.
+        batch.log_probs.iter_mut().for_each(|x| *x += older);
+        let mut experts = |rows: &mut [f32]| rows.fill(0.5);
+        let report = learning.iterate(&batch, &mut experts, RULE, Granularity::Sample);
+        report.expect("finite");
+        learning.scratch.returns
+    };
+    let distance = |older| {
+        let ignored = returns(OffPolicy::Ignored, older);
+        let corrected = returns(OffPolicy::VTrace, older);
+        let pairs = ignored.iter().zip(&corrected);
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+    };
+    // First actors answer next to nothing, as the batch says they did.
+    assert!(distance(0.0) < 0.02, "{}", distance(0.0));
+    assert!(distance(2.0) > 0.1, "{}", distance(2.0));
 }
 
 #[test]
