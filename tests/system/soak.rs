@@ -8,11 +8,21 @@ use crate::harness::{Runs, finish, program};
 
 #[test]
 fn a_few_kills_lose_nothing_and_leave_nothing() {
+    soak(&[]);
+}
+
+#[test]
+fn nor_do_a_few_kills_on_two_machines() {
+    soak(&["--hosts", "1", "--actors", "1"]);
+}
+
+fn soak(arguments: &[&str]) {
     let runs = Runs::new();
     let mut command = Command::new(program("ampco"));
     command
         .args(["soak", "--kills", "8", "--seed", "3", "--runs-dir"])
-        .arg(runs.path());
+        .arg(runs.path())
+        .args(arguments);
     let (_, out, said) = finish(command);
     let last = out.lines().last().unwrap_or_else(|| panic!("{said}"));
     let outcome: Value = serde_json::from_str(last).expect("JSON");

@@ -14,19 +14,23 @@ use supervise::programs;
 use terminal::Place;
 
 use super::Soak;
+use super::guest::Guest;
 
-const SUPERVISOR: &str = "supervisor";
+pub(super) const SUPERVISOR: &str = "supervisor";
 
 /// Longest that an orderly end may take.
-const ENDING: Duration = Duration::from_secs(90);
+pub(super) const ENDING: Duration = Duration::from_secs(90);
 
 /// A training group and what is known of it.
 pub(super) struct Group {
     pub(super) folder: Folder,
     place: Place,
     train: Child,
-    /// Every role that a whole group has.
+    /// What lets hosts in; nothing where there are none.
+    listen: Vec<String>,
+    /// Every role that a whole group has on the learner's machine.
     roles: Vec<String>,
+    pub(super) guests: Vec<Guest>,
     /// Who held them when the group was last whole.
     lives: BTreeMap<String, u32>,
     tail: Tail,
@@ -43,7 +47,14 @@ impl Group {
         let mut arguments: Vec<String> = ["--preset", &soak.preset, "--actors"]
             .map(str::to_owned)
             .into();
-        arguments.push(soak.actors.to_string());
+        arguments.push((soak.actors * (1 + soak.hosts)).to_string());
+        let gate = free_address()?;
+        let here = soak.actors.to_string();
+        let listen = match soak.hosts {
+            0 => Vec::new(),
+            _ => ["--listen", &gate, "--here", &here].map(str::to_owned).into(),
+        };
+        arguments.extend(listen.iter().cloned());
         // Endless: the soak says when it ends.
         for set in ["run.iterations=0", "run.minutes=0", "run.journal=true"] {
             arguments.extend(["--set".to_owned(), set.to_owned()]);
@@ -53,10 +64,19 @@ impl Group {
         }
         let actors = (0..soak.actors).map(|index| format!("actor-{index}"));
         let others = [SUPERVISOR, "scheduler", "learner"].map(str::to_owned);
+        let doors = (soak.hosts > 0).then(|| "gate".to_owned());
+        let train = start(&place, &folder, &arguments)?;
+        let file = folder.path().join(format!("join/{name}.join"));
+        let guest = |number: u32| {
+            let own = place.runs_dir.join(format!("{name}.hosts/{number}"));
+            Guest::start(format!("host-{number}"), own, &gate, &file, soak.actors)
+        };
         Ok(Self {
-            train: start(&place, &folder, &arguments)?,
+            guests: (1..=soak.hosts).map(guest).collect::<Result<_>>()?,
+            train,
             tail: Tail::from_start(&folder.metrics_path()),
-            roles: others.into_iter().chain(actors).collect(),
+            roles: others.into_iter().chain(doors).chain(actors).collect(),
+            listen,
             lives: BTreeMap::new(),
             at_work: false,
             folder,
@@ -64,13 +84,23 @@ impl Group {
         })
     }
 
-    pub(super) fn roles(&self) -> &[String] {
-        &self.roles
+    /// Every role that is filled on any machine; those of hosts as `host-1/carrier`.
+    pub(super) fn roles(&self) -> Vec<String> {
+        let there = self.guests.iter().flat_map(|guest| {
+            let roles = guest.roles().into_iter();
+            roles.map(|role| format!("{}/{role}", guest.name))
+        });
+        self.roles.iter().cloned().chain(there).collect()
     }
 
     /// Sends SIGKILL to whoever holds a role now; false if nobody does.
     pub(super) fn kill(&mut self, role: &str) -> bool {
         self.at_work = false;
+        if let Some((host, role)) = role.split_once('/') {
+            let mut guests = self.guests.iter_mut();
+            let guest = guests.find(|guest| guest.name == host);
+            return guest.is_some_and(|guest| guest.kill(role));
+        }
         let Some(pid) = self.holder(role) else {
             return false;
         };
@@ -86,6 +116,7 @@ impl Group {
     /// Starts the group again if its supervisor was killed: the one thing that nobody in it can do.
     pub(super) fn tend(&mut self) -> Result<()> {
         use std::os::unix::process::ExitStatusExt;
+        self.guests.iter_mut().try_for_each(Guest::tend)?;
         let Some(status) = self.train.try_wait().context("waiting for ampco train")? else {
             return Ok(());
         };
@@ -95,7 +126,8 @@ impl Group {
             let account = programs::account(status, said.as_deref(), &log, 0);
             bail!("ampco train {account}");
         }
-        self.train = start(&self.place, &self.folder, &["--resume".to_owned()])?;
+        let arguments = [&["--resume".to_owned()], self.listen.as_slice()].concat();
+        self.train = start(&self.place, &self.folder, &arguments)?;
         Ok(())
     }
 
@@ -128,17 +160,23 @@ impl Group {
                 role => self.folder.has_worked(role, pid),
             })
         };
-        self.roles
-            .iter()
-            .filter(|role| !fills(role))
-            .cloned()
-            .collect()
+        let here = self.roles.iter().filter(|role| !fills(role)).cloned();
+        let there = self.guests.iter().flat_map(Guest::missing);
+        here.chain(there).collect()
     }
 
     /// How many roles are held by another process than when this was last asked.
     pub(super) fn new_lives(&mut self) -> u64 {
         let holder = |role: &String| Some((role.clone(), self.holder(role)?));
-        let lives: BTreeMap<String, u32> = self.roles.iter().filter_map(holder).collect();
+        let mut lives: BTreeMap<String, u32> = self.roles.iter().filter_map(holder).collect();
+        for guest in &self.guests {
+            let there = guest.roles().into_iter();
+            let held = there.filter_map(|role| {
+                let pid = guest.holder(&role)?;
+                Some((format!("{}/{role}", guest.name), pid))
+            });
+            lives.extend(held);
+        }
         let new = lives
             .iter()
             .filter(|(role, pid)| self.lives.get(*role) != Some(pid));
@@ -170,7 +208,7 @@ impl Group {
             }
             std::thread::sleep(super::LOOK);
         }
-        Ok(())
+        self.guests.iter_mut().try_for_each(Guest::end)
     }
 }
 
@@ -180,6 +218,13 @@ impl Drop for Group {
         let _ = self.train.kill();
         let _ = self.train.wait();
     }
+}
+
+/// An address that nobody had a moment ago.
+fn free_address() -> Result<String> {
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").context("looking for a port")?;
+    let address = listener.local_addr().context("looking for a port")?;
+    Ok(address.to_string())
 }
 
 /// `ampco train` with what it says in a log, in a process group of its own: Ctrl-C is for the soak.

@@ -8,6 +8,7 @@
 
 mod figures;
 mod group;
+mod guest;
 mod outcome;
 
 use std::time::{Duration, Instant};
@@ -17,6 +18,7 @@ use clap::Args;
 use protocol::Shutdown;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use run::Folder;
 use terminal::Place;
 use terminal::console::{self, say};
 use terminal::failure::usage;
@@ -70,6 +72,9 @@ pub struct Soak {
     /// Actor processes
     #[arg(long, value_name = "N", default_value_t = 2)]
     actors: u32,
+    /// Hosts that join over loopback, each with as many actors as there are on the learner's machine
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    hosts: u32,
     /// Set one value of the group's configuration; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -246,8 +251,11 @@ impl<'a> Session<'a> {
         if !early {
             say(&self.figures.summary());
         }
+        let guests = self.group.guests.iter();
+        let guests: Vec<Folder> = guests.filter_map(|guest| guest.folder()).collect();
         Outcome::of(
             &self.group.folder,
+            &guests,
             self.kills,
             self.restarts,
             self.longest,

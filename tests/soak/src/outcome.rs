@@ -51,21 +51,26 @@ pub(super) struct Outcome {
 impl Outcome {
     pub(super) fn of(
         folder: &Folder,
+        guests: &[Folder],
         kills: u64,
         restarts: u64,
         longest: f64,
         victims: &[Victim],
     ) -> Result<Self> {
-        let journals = journal::read(&folder.logs()).context("reading the journals of rollouts")?;
-        let leftovers = Domain::for_run(folder.path())?.leftovers()?;
-        let alive = folder.holders()?.into_iter().map(|(role, _)| role);
+        let (mut journals, mut leftovers, mut alive) = (Vec::new(), Vec::new(), Vec::new());
+        for folder in std::iter::once(folder).chain(guests) {
+            let read = journal::read(&folder.logs());
+            journals.extend(read.context("reading the journals of rollouts")?);
+            leftovers.extend(Domain::for_run(folder.path())?.leftovers()?);
+            alive.extend(folder.holders()?.into_iter().map(|(role, _)| role));
+        }
         Ok(Self {
             kills,
             restarts,
             longest,
             account: account(&journals),
             left_bytes: leftovers.iter().map(|path| size(path)).sum(),
-            alive: alive.collect(),
+            alive,
             set_back: set_back(&journals, victims),
         })
     }

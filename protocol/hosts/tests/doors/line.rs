@@ -1,7 +1,7 @@
 //! Messages arrive, and a line that breaks is made again.
 
 use std::sync::atomic::Ordering;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use hosts::{CallError, Delivered, Delivery, Join};
 
@@ -16,17 +16,42 @@ fn delivery(bytes: usize) -> Delivery {
     }
 }
 
+/// Seconds of processor time that this process has used.
+fn busy() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap();
+    let fields: Vec<&str> = stat.rsplit(')').next().unwrap().split_whitespace().collect();
+    // User and system time in hundredths of a second, proc_pid_stat(5).
+    (fields[11].parse::<f64>().unwrap() + fields[12].parse::<f64>().unwrap()) / 100.0
+}
+
 #[tokio::test]
 async fn a_rollout_arrives_and_is_acknowledged() {
     let gate = Listening::begin().await;
     let line = gate.line(hello());
     assert_eq!(line.joined().await.unwrap().numbers, [2, 3]);
-    for _ in 0..3 {
-        let answer: Delivered = line.call("Deliver", delivery(ROLLOUT), 10 * SECOND).await.unwrap();
+    let count: u64 = std::env::var("AMPCO_ROLLOUTS").map_or(3, |n| n.parse().unwrap());
+    let (began, before) = (Instant::now(), busy());
+    for _ in 0..count {
+        let answer: Delivered = line
+            .call("Deliver", delivery(ROLLOUT), 10 * SECOND)
+            .await
+            .unwrap();
         assert!(answer.taken);
     }
-    assert_eq!(gate.desk.rollouts.load(Ordering::Relaxed), 3);
-    assert_eq!(gate.desk.bytes.load(Ordering::Relaxed), 3 * ROLLOUT as u64);
+    let (seconds, gigabytes) = (
+        began.elapsed().as_secs_f64(),
+        (count * ROLLOUT as u64) as f64 / 1e9,
+    );
+    println!(
+        "{:.0} MB/s, both ends together {:.2} CPU-s/GB",
+        1e3 * gigabytes / seconds,
+        (busy() - before) / gigabytes
+    );
+    assert_eq!(gate.desk.rollouts.load(Ordering::Relaxed), count as usize);
+    assert_eq!(
+        gate.desk.bytes.load(Ordering::Relaxed),
+        count * ROLLOUT as u64
+    );
     // One connection for all of it.
     assert_eq!(gate.desk.joined.load(Ordering::Relaxed), 1);
     let figures = line.figures();

@@ -107,6 +107,12 @@ async fn a_plain_connection_is_refused_and_a_slow_one_thrown_out() {
 
 #[tokio::test]
 async fn a_thousand_connections_cost_little_and_a_host_gets_in() {
+    // Both ends of all of them are in this process.
+    let limit = rustix::process::Rlimit {
+        current: Some(4096),
+        maximum: Some(4096),
+    };
+    let _ = rustix::process::setrlimit(rustix::process::Resource::Nofile, limit);
     let gate = Listening::begin().await;
     let here = gate.line(hello());
     here.joined().await.unwrap();
