@@ -109,7 +109,10 @@ fn describe(folder: &Folder, status: &Value) -> Result<String> {
     lines.extend(timing.map(|split| format!("time: {split}")));
     let processes = status["processes"].as_object().into_iter().flatten();
     let processes: Vec<String> = processes
-        .map(|(role, pid)| format!("{role} {pid}"))
+        .map(|(role, pid)| match pid.as_str() {
+            Some(place) => format!("{role} {place}"),
+            None => format!("{role} {pid}"),
+        })
         .collect();
     if !processes.is_empty() {
         lines.push(format!("processes: {}", processes.join(", ")));

@@ -11,6 +11,7 @@ mod robots;
 
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
@@ -46,6 +47,8 @@ struct Carrier {
     checkpoints: Checkpoints,
     robots: Robots,
     counted: Counted,
+    /// The run has ended: nobody will take what the gate does not take now.
+    ended: AtomicBool,
 }
 
 /// Carries for the actors of the host whose folder is `run_dir`, until it is told to stop or the run ends.
@@ -74,6 +77,7 @@ pub fn run(run_dir: &Path) -> Result<()> {
         checkpoints: folder.checkpoints(),
         counted: Counted::new(&local),
         robots: Robots::default(),
+        ended: AtomicBool::new(false),
         stay,
         local,
         folder,
@@ -121,6 +125,7 @@ impl Carrier {
             }
         };
         if let Some((version, _)) = &last {
+            self.ended.store(true, Ordering::Relaxed);
             self.until_saved(*version).await;
         }
         // What the actors sent is in the queues by then; each is sent to its end.

@@ -1,12 +1,14 @@
 //! One actor's rollouts, one after the other, each until it is acknowledged.
 
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
 use hosts::{CallError, Delivered};
 use tokio::sync::mpsc::Receiver;
 use tokio::time::sleep;
+use tracing::info;
 
 use super::intake::Parcel;
 use super::{Carrier, PAUSE};
@@ -34,6 +36,10 @@ impl Carrier {
                     Ok(Delivered { taken: true }) => {
                         let seconds = began.elapsed().as_secs_f32();
                         self.counted.acknowledged(header.policy_version, seconds);
+                        break;
+                    }
+                    Ok(Delivered { taken: false }) if self.ended.load(Ordering::Relaxed) => {
+                        info!(actor, "the run ended before a rollout was taken");
                         break;
                     }
                     Ok(Delivered { taken: false }) => {}

@@ -112,9 +112,11 @@ impl Gate {
             let sent = publisher.forward(loan, header);
             match sent.map_err(|error| refused(error.to_string()))? {
                 SendOutcome::Delivered => return Ok(true),
-                // Nobody listens: the learner is not there yet, or no longer.
+                // Nobody listens: the learner is not there yet, or no longer, and comes again unless the run has ended.
                 SendOutcome::Lost
-                    if since.elapsed() < WAITING && !self.node.shutdown().requested() =>
+                    if since.elapsed() < WAITING
+                        && !self.node.shutdown().requested()
+                        && self.newest_order() != Some(WeightsOrder::SaveThenStop) =>
                 {
                     std::thread::sleep(LOOK);
                 }

@@ -154,6 +154,8 @@ async fn messages_that_are_too_long_are_refused_before_they_are_read() {
 async fn raw(gate: &Listening) -> hyper::client::conn::http2::SendRequest<Sent> {
     let pass = hosts::Pass::read(&gate.run.path().join("join/walk.join")).unwrap();
     let stream = TcpStream::connect(&gate.address).await.unwrap();
+    // Frames are small: nobody is to wait for the confirmation of the one before.
+    stream.set_nodelay(true).unwrap();
     let name = ServerName::try_from("gate.ampco").unwrap();
     let tls = TlsConnector::from(pass.client().unwrap());
     let stream = tls.connect(name, stream).await.unwrap();
