@@ -18,7 +18,7 @@ use tempfile::TempDir;
 mod enclosed;
 mod wait;
 
-pub(crate) use enclosed::{enclosed, has_no_namespaces};
+pub(crate) use enclosed::{enclosed, enclosed_alone, has_no_namespaces};
 pub(crate) use wait::until;
 use wait::{GLANCE, until_within};
 

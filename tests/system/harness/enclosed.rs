@@ -21,10 +21,21 @@ AMPCO=/tmp/programs/ampco
 /// `unshare`, to run a script as root of a user namespace of its own. In it `/tmp` is `place`, so that what is written to
 /// /tmp/x is `place/x` outside, and `$AMPCO` is the program.
 pub(crate) fn enclosed(place: &Path, script: &str) -> Command {
+    within(place, &["--user", "--map-root-user", "--mount"], script)
+}
+
+/// The same without a network but what the script makes.
+pub(crate) fn enclosed_alone(place: &Path, script: &str) -> Command {
+    let own = ["--user", "--map-root-user", "--mount", "--net"];
+    within(place, &own, script)
+}
+
+fn within(place: &Path, own: &[&str], script: &str) -> Command {
     let programs = program("ampco");
     let mut command = Command::new("unshare");
     command
-        .args(["--user", "--map-root-user", "--mount", "sh", "-c"])
+        .args(own)
+        .args(["sh", "-c"])
         .arg(format!("{OWN_PLACES}{script}"))
         .env("PLACE", place)
         .env("PROGRAMS", programs.parent().expect("a folder of programs"))
