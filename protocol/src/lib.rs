@@ -44,9 +44,9 @@ pub use port::{SendOutcome, Wake};
 pub use presence::{Node, TICK};
 pub use reward::{RewardArrival, RewardPublisher, RewardReport, RewardSubscriber};
 pub use rollout::{
-    Entry, Flaw, Ledger, Lists, MAX_NAME, MAX_TERMS, Rollout, RolloutHeader, RolloutLayout, RolloutLoan,
-    RolloutPublisher, RolloutStep, RolloutStepMut, RolloutSubscriber, RolloutView, RolloutViewMut,
-    SendTotals, SentPrint, TermMean, Totals,
+    Entry, Flaw, Ledger, Lists, MAX_NAME, MAX_TERMS, Rollout, RolloutHeader, RolloutLayout,
+    RolloutLoan, RolloutPublisher, RolloutStep, RolloutStepMut, RolloutSubscriber, RolloutView,
+    RolloutViewMut, SendTotals, SentPrint, TermMean, Totals,
 };
 pub use shutdown::{PresenceError, SUPERVISOR_VARIABLE, Shutdown, end_with_supervisor};
 pub use stream::MAX_ACTORS;

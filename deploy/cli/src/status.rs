@@ -55,7 +55,8 @@ fn status(folder: &Folder) -> Result<Value> {
             (
                 role.clone(),
                 // An actor on another machine has none here: its holder says where it is.
-                pid.parse().map_or_else(|_| json!(pid), |pid: u32| json!(pid)),
+                pid.parse()
+                    .map_or_else(|_| json!(pid), |pid: u32| json!(pid)),
             )
         })
         .collect();

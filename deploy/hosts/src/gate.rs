@@ -136,6 +136,9 @@ fn write(folder: &Folder, known: &crate::known::Known, keep: bool) {
             .map_err(Into::into);
     }
     if let Err(error) = done {
-        warn!(error = format!("{error:#}"), "what is known of hosts is not written");
+        warn!(
+            error = format!("{error:#}"),
+            "what is known of hosts is not written"
+        );
     }
 }

@@ -115,7 +115,11 @@ impl JoinRun {
 /// "actors 2, 3".
 fn numbered(numbers: &[u32]) -> String {
     let listed: Vec<String> = numbers.iter().map(u32::to_string).collect();
-    let noun = if numbers.len() == 1 { "actor" } else { "actors" };
+    let noun = if numbers.len() == 1 {
+        "actor"
+    } else {
+        "actors"
+    };
     format!("{noun} {}", listed.join(", "))
 }
 

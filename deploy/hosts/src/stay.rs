@@ -79,7 +79,11 @@ pub(crate) fn host() -> String {
     let name = name.nodename().to_string_lossy();
     let letters = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
     let name: String = name.chars().filter(|c| letters(*c)).take(24).collect();
-    if name.is_empty() { "host".to_owned() } else { name }
+    if name.is_empty() {
+        "host".to_owned()
+    } else {
+        name
+    }
 }
 
 #[cfg(test)]

@@ -24,7 +24,9 @@ impl Group<'_> {
         let guests = self.launch.members.are_guests();
         if !matches!(reason, Reason::Complete) {
             self.console.say(match &reason {
-                Reason::Asked if guests => "leaving: finishing the rollouts (once more to kill at once)",
+                Reason::Asked if guests => {
+                    "leaving: finishing the rollouts (once more to kill at once)"
+                }
                 Reason::TimeUp => "time is up: finishing the iteration",
                 Reason::Failed(_) | Reason::GivenUp(..) => "ending the group",
                 _ => "ending: finishing the iteration (once more to kill at once)",
@@ -155,8 +157,15 @@ impl Group<'_> {
             Reason::Failed(_) | Reason::GivenUp(..) => "failed",
         };
         let run = self.launch.folder.name();
-        let whose = if self.launch.members.are_guests() { "host of run" } else { "run" };
-        let mut report = format!("{whose} {run} {what} after {}", clock(self.started.elapsed()));
+        let whose = if self.launch.members.are_guests() {
+            "host of run"
+        } else {
+            "run"
+        };
+        let mut report = format!(
+            "{whose} {run} {what} after {}",
+            clock(self.started.elapsed())
+        );
         if let Some(figures) = &self.pace.newest {
             report += &format!(
                 " at iteration {}, {}",

@@ -176,7 +176,8 @@ impl<'a> Group<'a> {
             let line = std::fs::read_to_string(path).unwrap_or_default();
             let alive = count(self.alive(is_actor).len(), "actor");
             let time = clock(now - self.started);
-            self.console.show(&format!("{line} · {alive} alive · {time}"), now);
+            self.console
+                .show(&format!("{line} · {alive} alive · {time}"), now);
             return;
         }
         let outlook = Outlook {

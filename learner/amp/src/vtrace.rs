@@ -63,7 +63,9 @@ pub fn log_ratios(
     out: &mut Vec<f32>,
 ) {
     let columns = sigma.len();
-    let rows = actions.chunks_exact(columns).zip(means.chunks_exact(columns));
+    let rows = actions
+        .chunks_exact(columns)
+        .zip(means.chunks_exact(columns));
     for (row, ((action, mean), log_prob)) in rows.zip(log_probs).enumerate() {
         let width = widths.get(row).copied().unwrap_or(1.0);
         let each = action.iter().zip(mean).zip(sigma);

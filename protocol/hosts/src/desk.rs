@@ -64,7 +64,10 @@ pub trait Desk: Send + Sync + 'static {
     /// Weights other than the host has, or after some seconds none.
     fn newest(self: Arc<Self>, wanted: Wanted) -> impl Future<Output = Answer<Newest>> + Send;
     /// Passes a rollout on.
-    fn deliver(self: Arc<Self>, delivery: Delivery) -> impl Future<Output = Answer<Delivered>> + Send;
+    fn deliver(
+        self: Arc<Self>,
+        delivery: Delivery,
+    ) -> impl Future<Output = Answer<Delivered>> + Send;
     /// Adds an actor's robots to a checkpoint.
     fn attach(self: Arc<Self>, robots: Robots) -> impl Future<Output = Answer<Attached>> + Send;
     /// An actor's robots of a checkpoint.
@@ -81,7 +84,11 @@ pub(crate) async fn answer<D: Desk>(
     most: usize,
     time: Duration,
 ) -> Result<http::Response<Body>, Infallible> {
-    let name = request.uri().path().strip_prefix(SERVICE).map(str::to_owned);
+    let name = request
+        .uri()
+        .path()
+        .strip_prefix(SERVICE)
+        .map(str::to_owned);
     let piece = crate::PIECE + SLACK;
     let answered = async {
         match name.as_deref() {

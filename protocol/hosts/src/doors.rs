@@ -162,7 +162,13 @@ impl<D: Desk> Doors<D> {
             };
             info!(%from, "a host is connected");
             let service = service_fn(move |request| {
-                answer(Arc::clone(&desk), from, request, limits.message, limits.call)
+                answer(
+                    Arc::clone(&desk),
+                    from,
+                    request,
+                    limits.message,
+                    limits.call,
+                )
             });
             let ended = http2::Builder::new(TokioExecutor::new())
                 .timer(TokioTimer::new())

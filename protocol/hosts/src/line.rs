@@ -26,9 +26,7 @@ use tower_service::Service;
 use tracing::info;
 
 use crate::desk::SERVICE;
-use crate::doors::{
-    CONNECTION_WINDOW, FRAME, PING_PATIENCE, STREAM_WINDOW, reason, settle,
-};
+use crate::doors::{CONNECTION_WINDOW, FRAME, PING_PATIENCE, STREAM_WINDOW, reason, settle};
 use crate::messages::{Join, Joined};
 use crate::passes::GATE;
 

@@ -20,8 +20,20 @@ pub fn features() -> Vec<String> {
         };
     }
     look!(
-        "sse4.2", "avx", "avx2", "fma", "f16c", "bmi2", "avx512f", "avx512bw", "avx512cd",
-        "avx512dq", "avx512vl", "avx512vnni", "avx512bf16", "avx512fp16"
+        "sse4.2",
+        "avx",
+        "avx2",
+        "fma",
+        "f16c",
+        "bmi2",
+        "avx512f",
+        "avx512bw",
+        "avx512cd",
+        "avx512dq",
+        "avx512vl",
+        "avx512vnni",
+        "avx512bf16",
+        "avx512fp16"
     );
     found
 }

@@ -167,8 +167,8 @@ fn lists_of(numbers: &[u64]) -> Result<SentPrint, SentError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use prost::Message;
     use proptest::prelude::*;
+    use prost::Message;
     use protocol::{Lists, RolloutLayout, WeightsOrder};
 
     fn header() -> RolloutHeader {

@@ -52,7 +52,9 @@ impl Group {
         let here = soak.actors.to_string();
         let listen = match soak.hosts {
             0 => Vec::new(),
-            _ => ["--listen", &gate, "--here", &here].map(str::to_owned).into(),
+            _ => ["--listen", &gate, "--here", &here]
+                .map(str::to_owned)
+                .into(),
         };
         arguments.extend(listen.iter().cloned());
         // Endless: the soak says when it ends.

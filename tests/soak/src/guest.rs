@@ -93,7 +93,9 @@ impl Guest {
         let unnamed = (!whole).then(|| "its actors".to_owned());
         let missing = roles.into_iter().filter(|role| !fills(role));
         let missing = missing.chain(unnamed);
-        missing.map(|role| format!("{}/{role}", self.name)).collect()
+        missing
+            .map(|role| format!("{}/{role}", self.name))
+            .collect()
     }
 
     /// Sends SIGKILL to whoever holds a role now; false if nobody does.

@@ -151,7 +151,9 @@ fn a_host_that_leaves_is_no_longer_counted_on() {
     assert!(on("actor-3").expect("held").starts_with("on "));
     host.signal(Signal::INT);
     assert!(host.end().success(), "{}", host.stderr.text());
-    until("the roles to be given up", || on("actor-3").is_none().then_some(()));
+    until("the roles to be given up", || {
+        on("actor-3").is_none().then_some(())
+    });
     until("two actors", || {
         metrics(&run).pop().filter(|line| line["actors"] == 2)
     });

@@ -56,7 +56,10 @@ fn between(place: &Runs, script: &str) -> bool {
 fn account(place: &Runs) -> run::journal::Account {
     let mut journals = Vec::new();
     for folder in ["near", "far"] {
-        for entry in fs::read_dir(place.path().join(folder)).expect("a folder").flatten() {
+        for entry in fs::read_dir(place.path().join(folder))
+            .expect("a folder")
+            .flatten()
+        {
             journals.extend(run::journal::read(&entry.path().join("logs")).expect("journals"));
         }
     }

@@ -94,7 +94,10 @@ fn receive(
             continue;
         }
         let Some(sender) = senders.get(&header.actor) else {
-            warn!(actor = header.actor, "a rollout of an actor that is not this host's is not sent");
+            warn!(
+                actor = header.actor,
+                "a rollout of an actor that is not this host's is not sent"
+            );
             continue;
         };
         let rows = lean.strip(rollout.numbers());

@@ -137,7 +137,10 @@ impl Gate {
         };
         let numbers = lock(&self.seats).join(&from.to_string(), join, &house)?;
         if let Err(error) = self.local.note(&self.folder, "gate", &numbers) {
-            warn!(error = format!("{error:#}"), "the journal cannot be written");
+            warn!(
+                error = format!("{error:#}"),
+                "the journal cannot be written"
+            );
         }
         let mut notices = Vec::new();
         let ours = hosts::features();
@@ -145,7 +148,11 @@ impl Gate {
             let only = |one: &[String], other: &[String]| -> String {
                 let rest = one.iter().filter(|name| !other.contains(name));
                 let rest: Vec<&str> = rest.map(String::as_str).collect();
-                if rest.is_empty() { "none".to_owned() } else { rest.join(" ") }
+                if rest.is_empty() {
+                    "none".to_owned()
+                } else {
+                    rest.join(" ")
+                }
             };
             let notice = format!(
                 "{} and the learner's machine have other processors (only there: {}; only here: {}): the run learns, but it is \
@@ -157,7 +164,9 @@ impl Gate {
             warn!("{notice}");
             notices.push(notice);
         }
-        let surplus = numbers.iter().filter(|number| **number as usize >= self.local.actors);
+        let surplus = numbers
+            .iter()
+            .filter(|number| **number as usize >= self.local.actors);
         let surplus = surplus.count();
         if surplus > 0 {
             notices.push(format!(
@@ -244,7 +253,8 @@ impl Desk for Gate {
         lock(&self.seats).seat(&wanted.life, wanted.actor)?;
         let gate = Arc::clone(&self);
         let life = wanted.life.clone();
-        let piece = aside(move || Ok(lock(&gate.moving).fetch(&wanted, &gate.folder.checkpoints())));
+        let piece =
+            aside(move || Ok(lock(&gate.moving).fetch(&wanted, &gate.folder.checkpoints())));
         let piece = piece.await?;
         lock(&self.seats).hear(&life)?.bytes_out += piece.bytes.len() as u64;
         Ok(piece)

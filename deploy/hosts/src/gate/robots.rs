@@ -97,9 +97,15 @@ mod tests {
         let whole: Vec<u8> = (0..PIECE + 1000).map(|i| (i % 251) as u8).collect();
         let mut moving = Moving::default();
         let so_far = |answer: Answer<Attached>| answer.unwrap().so_far as usize;
-        assert_eq!(so_far(moving.attach(&piece(0, &whole), &checkpoints)), PIECE);
+        assert_eq!(
+            so_far(moving.attach(&piece(0, &whole), &checkpoints)),
+            PIECE
+        );
         // The answer was lost: the piece comes again.
-        assert_eq!(so_far(moving.attach(&piece(0, &whole), &checkpoints)), PIECE);
+        assert_eq!(
+            so_far(moving.attach(&piece(0, &whole), &checkpoints)),
+            PIECE
+        );
         let done = moving.attach(&piece(PIECE, &whole), &checkpoints);
         assert_eq!(so_far(done), whole.len());
         let attached = checkpoints.attachment(8, "actor-3.bin").unwrap();

@@ -79,14 +79,21 @@ impl Seats {
         (guest.from, guest.heard) = (from.to_owned(), now);
         let seated = guest.sit(join, house);
         let numbers: Vec<u32> = guest.seats.keys().copied().collect();
-        info!(host = join.host, life = join.life, ?numbers, from, "a host joined");
+        info!(
+            host = join.host,
+            life = join.life,
+            ?numbers,
+            from,
+            "a host joined"
+        );
         self.guests.insert(join.life.clone(), guest);
         seated.map(|()| numbers)
     }
 
     /// The host of a stay, which is heard.
     pub(super) fn hear(&mut self, life: &str) -> Result<&mut Guest, Said> {
-        let unknown = || Said::Unknown("this host was silent for too long; it joins again".to_owned());
+        let unknown =
+            || Said::Unknown("this host was silent for too long; it joins again".to_owned());
         let guest = self.guests.get_mut(life).ok_or_else(unknown)?;
         guest.heard = Instant::now();
         Ok(guest)
@@ -117,7 +124,12 @@ impl Seats {
             let stays = guest.heard.elapsed() < LEASE;
             if !stays {
                 let numbers: Vec<&u32> = guest.seats.keys().collect();
-                warn!(host = guest.name, life, ?numbers, "a host is silent and taken for gone");
+                warn!(
+                    host = guest.name,
+                    life,
+                    ?numbers,
+                    "a host is silent and taken for gone"
+                );
             }
             stays
         });

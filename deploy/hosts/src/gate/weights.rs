@@ -49,7 +49,10 @@ impl Broadcast {
             .name("weights".to_owned())
             .spawn(move || {
                 if let Err(error) = follow(&weights, &sender, &end) {
-                    error!(error = format!("{error:#}"), "weights are no longer followed");
+                    error!(
+                        error = format!("{error:#}"),
+                        "weights are no longer followed"
+                    );
                     // Without weights this process is of no use; another one is started in its place.
                     std::process::abort();
                 }

@@ -63,7 +63,9 @@ pub(super) fn point_to_copies(config: &mut Config, folder: &Path) {
             *file = copy_of(folder, Path::new(&*file)).display().to_string();
         }
         if let Some(Value::String(there)) = clip.get_mut("folder") {
-            *there = copy_of_folder(folder, Path::new(&*there)).display().to_string();
+            *there = copy_of_folder(folder, Path::new(&*there))
+                .display()
+                .to_string();
         }
     }
     config.put(CLIPS, clips, "ampco join");

@@ -19,7 +19,12 @@ fn delivery(bytes: usize) -> Delivery {
 /// Seconds of processor time that this process has used.
 fn busy() -> f64 {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap();
-    let fields: Vec<&str> = stat.rsplit(')').next().unwrap().split_whitespace().collect();
+    let fields: Vec<&str> = stat
+        .rsplit(')')
+        .next()
+        .unwrap()
+        .split_whitespace()
+        .collect();
     // User and system time in hundredths of a second, proc_pid_stat(5).
     (fields[11].parse::<f64>().unwrap() + fields[12].parse::<f64>().unwrap()) / 100.0
 }

@@ -38,7 +38,11 @@ async fn serves(gate: &Listening) {
 async fn turned_away(gate: &Listening, count: u64) {
     let until = Instant::now() + 10 * SECOND;
     while gate.doors.refused() < count {
-        assert!(Instant::now() < until, "{} turned away", gate.doors.refused());
+        assert!(
+            Instant::now() < until,
+            "{} turned away",
+            gate.doors.refused()
+        );
         sleep(Duration::from_millis(20)).await;
     }
 }
@@ -199,7 +203,10 @@ impl hyper::body::Body for Whole {
         mut self: std::pin::Pin<&mut Self>,
         _: &mut std::task::Context<'_>,
     ) -> std::task::Poll<Option<Result<hyper::body::Frame<Self::Data>, Self::Error>>> {
-        let piece = self.0.take().map(|bytes| Ok(hyper::body::Frame::data(bytes.into())));
+        let piece = self
+            .0
+            .take()
+            .map(|bytes| Ok(hyper::body::Frame::data(bytes.into())));
         std::task::Poll::Ready(piece)
     }
 }
@@ -220,7 +227,11 @@ async fn a_message_that_claims_four_gigabytes_takes_no_memory() {
     inside.extend([0x6a, 0xff, 0xff, 0xff, 0xff, 0x0f]);
     let status = call(&mut sender, "Deliver", inside).await;
     assert_eq!(status.as_deref(), Some("13")); // cannot be read
-    assert!(resident() < before + (64 << 20), "{before} → {}", resident());
+    assert!(
+        resident() < before + (64 << 20),
+        "{before} → {}",
+        resident()
+    );
     serves(&gate).await;
 }
 
@@ -229,7 +240,9 @@ async fn frames_at_random_do_no_harm() {
     let gate = Listening::begin().await;
     let count: usize = std::env::var("AMPCO_FRAMES").map_or(2_000, |n| n.parse().unwrap());
     let mut sender = raw(&gate).await;
-    let names = ["Join", "Motion", "Newest", "Deliver", "Attach", "Fetch", "Leave", "None"];
+    let names = [
+        "Join", "Motion", "Newest", "Deliver", "Attach", "Fetch", "Leave", "None",
+    ];
     let mut state = 88_172_645_463_325_252_u64;
     let mut random = move || {
         // Marsaglia's xorshift.
