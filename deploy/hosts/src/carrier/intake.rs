@@ -20,6 +20,9 @@ pub(super) struct Parcel {
     pub(super) rows: Vec<u8>,
 }
 
+/// By actor what is to be sent of it.
+pub(super) type Queues = Vec<(u32, Receiver<Parcel>)>;
+
 /// The thread that receives.
 pub(super) struct Intake {
     finishing: Arc<AtomicBool>,
@@ -32,7 +35,7 @@ impl Intake {
         rollouts: RolloutSubscriber,
         lean: Lean,
         numbers: &[u32],
-    ) -> Result<(Self, Vec<(u32, Receiver<Parcel>)>)> {
+    ) -> Result<(Self, Queues)> {
         let mut senders = BTreeMap::new();
         let mut queues = Vec::new();
         for number in numbers {
