@@ -23,6 +23,7 @@
 
 mod elu;
 mod error;
+mod exploration;
 mod gaussian;
 mod kernel;
 mod layer;
@@ -31,6 +32,7 @@ mod policy;
 mod shape;
 
 pub use error::PolicyError;
+pub use exploration::Exploration;
 pub use gaussian::Gaussian;
 pub use policy::Policy;
 pub use shape::{LayerPlace, OUTPUTS, Shape};

@@ -91,6 +91,7 @@ const TABLE: &[(&str, Rule, &[&str])] = &[
             "critic_first",
             "symmetry_weight",
             "symmetry_share",
+            "entropy_weight",
         ],
     ),
     ("ppo", Free, &["threads"]),
