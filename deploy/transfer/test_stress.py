@@ -41,8 +41,8 @@ class Rows(unittest.TestCase):
             self.assertEqual(value, STRESSES[name].default / 2)
 
     def test_rows_can_be_asked_of_another_program(self):
-        asked = rows("delay,gains=0.8+payload=-0.5,half")
-        self.assertTrue(text(asked).startswith("delay=20.0,gains=0.8+payload=-0.5,delay=10.0+"))
+        asked = rows("delay,gains=0.8+payload=0.5,half")
+        self.assertTrue(text(asked).startswith("delay=20.0,gains=0.8+payload=0.5,delay=10.0+"))
         self.assertEqual([row for _, row in rows(text(asked))], [row for _, row in asked])
         self.assertEqual(text(rows("none")), "")
 
