@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-use policy::{Exploration, Policy};
+use policy::Policy;
 use protocol::RolloutViewMut;
 use rand_pcg::Pcg64Mcg;
 use sim::{Fleet, StepOut};
@@ -21,12 +21,12 @@ pub struct Timing {
 
 /// Lets `policy` act in `fleet` for as many steps as `rollout` has room for.
 ///
-/// Allocates nothing. `rollout` may hold old numbers: every block is written, the time-out block with zeros where no episode
-/// timed out.
+/// The last `calm` robots explore calmly. Allocates nothing. `rollout` may hold old numbers: every block is written, the time-out block
+/// with zeros where no episode timed out.
 pub fn collect(
     fleet: &mut Fleet,
     policy: &mut Policy,
-    exploration: &mut Exploration,
+    calm: usize,
     generator: &mut Pcg64Mcg,
     rollout: &mut RolloutViewMut<'_>,
 ) -> Timing {
@@ -42,7 +42,7 @@ pub fn collect(
         step.features.copy_from_slice(fleet.features());
         policy.sample(
             step.observations,
-            exploration,
+            calm,
             generator,
             step.actions,
             step.means,

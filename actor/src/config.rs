@@ -18,8 +18,6 @@ pub struct ActorConfig {
     pub layout: RolloutLayout,
     /// Robots of a rollout that explore calmly.
     pub calm: usize,
-    /// How long exploration's noise lasts, s.
-    pub noise_memory: f32,
     /// Which engine moves the robots, and what may touch.
     pub mechanics: Mechanics,
     /// What is seen of the robots.
@@ -64,7 +62,6 @@ impl ActorConfig {
                 lists: Lists::from(&tables),
             },
             calm: fleet.calm_robots(),
-            noise_memory: fleet.noise_memory,
             mechanics: fleet.mechanics(),
             tables,
             task: config.section()?,

@@ -4,7 +4,7 @@
 //! where a checkpoint left it.
 
 use anyhow::{Context, Result, ensure};
-use policy::{Exploration, Policy, Shape};
+use policy::{Policy, Shape};
 use protocol::{RolloutViewMut, WeightsHeader, WeightsOrder};
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
@@ -21,7 +21,8 @@ use crate::config::ActorConfig;
 pub(crate) struct Worker {
     fleet: Fleet,
     policy: Policy,
-    exploration: Exploration,
+    /// Robots that explore calmly.
+    calm: usize,
     generator: Pcg64Mcg,
 }
 
@@ -30,7 +31,6 @@ pub(crate) struct Worker {
 struct Snapshot {
     fleet: Vec<u8>,
     generator: Pcg64Mcg,
-    noise: Vec<f32>,
 }
 
 impl Worker {
@@ -61,15 +61,11 @@ impl Worker {
         )
         .context("setting up the fleet")?;
         let (shape, clip) = network(config, header, weights)?;
-        let mut generator = Pcg64Mcg::seed_from_u64(mix(seed, 0));
-        let robots = config.layout.environments;
-        let exploration =
-            Exploration::new(robots, config.calm, config.noise_memory, &mut generator);
         let mut worker = Self {
             fleet,
             policy: Policy::new(shape, clip),
-            exploration,
-            generator,
+            calm: config.calm,
+            generator: Pcg64Mcg::seed_from_u64(mix(seed, 0)),
         };
         if header.order() != Some(WeightsOrder::Collect) {
             worker.restore_or_save(index, header.version, checkpoints, "new episodes begin");
@@ -137,12 +133,6 @@ impl Worker {
             bincode::serde::decode_from_slice(bytes, bincode::config::standard())
                 .context("reading the snapshot")?;
         self.fleet.restore(&snapshot.fleet)?;
-        ensure!(
-            self.exploration.restore(&snapshot.noise),
-            "the snapshot's exploration is of {} numbers instead of {}",
-            snapshot.noise.len(),
-            self.exploration.noise().len()
-        );
         self.generator = snapshot.generator;
         Ok(())
     }
@@ -153,7 +143,6 @@ impl Worker {
         let snapshot = Snapshot {
             fleet: self.fleet.save(),
             generator: self.generator.clone(),
-            noise: self.exploration.noise().to_vec(),
         };
         let bytes = bincode::serde::encode_to_vec(&snapshot, bincode::config::standard())
             .expect("a snapshot can be written to memory");
@@ -192,7 +181,7 @@ impl Worker {
         collect(
             &mut self.fleet,
             &mut self.policy,
-            &mut self.exploration,
+            self.calm,
             &mut self.generator,
             rollout,
         )
@@ -291,7 +280,6 @@ mod tests {
                 lists: Lists::default(),
             },
             calm: 0,
-            noise_memory: 0.0,
             mechanics: Physics::Rapier.into(),
             tables: Tables::default(),
             task: TaskConfig {

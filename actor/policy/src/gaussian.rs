@@ -3,8 +3,7 @@
 use pulp::Arch;
 use rand::Rng;
 
-use crate::OUTPUTS;
-use crate::exploration::Trying;
+use crate::{OUTPUTS, normal};
 
 /// Squares of a row's deviations with room to add them by halves.
 const SQUARES: usize = OUTPUTS.next_power_of_two();
@@ -39,12 +38,11 @@ impl Gaussian {
     }
 
     /// Draws  aᵢ = μᵢ + σᵢ·zᵢ,  zᵢ standard normal, for rows of means `[n][joints]`, with the log-density of each row in
-    /// `log_probs` `[n]`: that of the action by itself, whatever was tried before.
+    /// `log_probs` `[n]`.
     pub(crate) fn sample<R: Rng + ?Sized>(
         &self,
         arch: Arch,
         means: &[f32],
-        mut trying: Trying<'_>,
         rng: &mut R,
         actions: &mut [f32],
         log_probs: &mut [f32],
@@ -54,9 +52,8 @@ impl Gaussian {
         arch.dispatch(
             #[inline(always)]
             || {
-                let rows = means.iter().zip(actions).zip(log_probs);
-                for (robot, ((mean, action), log_prob)) in rows.enumerate() {
-                    let z = trying.next(robot, rng);
+                for ((mean, action), log_prob) in means.iter().zip(actions).zip(log_probs) {
+                    let z = normal::row(rng);
                     for i in 0..OUTPUTS {
                         action[i] = mean[i] + self.sigma[i] * z[i];
                     }
@@ -99,7 +96,6 @@ impl Gaussian {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Exploration;
     use rand::SeedableRng;
 
     #[test]
@@ -136,18 +132,9 @@ mod tests {
         let (mut sums, mut squares) = ([0.0_f64; OUTPUTS], [0.0_f64; OUTPUTS]);
         let draws = 20_000;
         let mut log_prob = [0.0];
-        let mut plain = Exploration::plain(1);
         for _ in 0..draws {
             let mut action = [0.0; OUTPUTS];
-            let [trying, _] = plain.parts();
-            gaussian.sample(
-                Arch::new(),
-                &mean,
-                trying,
-                &mut rng,
-                &mut action,
-                &mut log_prob,
-            );
+            gaussian.sample(Arch::new(), &mean, &mut rng, &mut action, &mut log_prob);
             assert_eq!(log_prob[0], gaussian.log_density(&action, &mean));
             for i in 0..OUTPUTS {
                 let off = f64::from(action[i] - mean[i]);
@@ -170,18 +157,7 @@ mod tests {
         let draw = |arch: Arch| {
             let (mut actions, mut log_probs) = (vec![0.0; means.len()], vec![0.0; 7]);
             let mut rng = rand_pcg::Pcg64::seed_from_u64(2);
-            let mut lasting = Exploration::new(7, 0, 0.1, &mut rng);
-            for _ in 0..3 {
-                let [trying, _] = lasting.parts();
-                gaussian.sample(
-                    arch,
-                    &means,
-                    trying,
-                    &mut rng,
-                    &mut actions,
-                    &mut log_probs,
-                );
-            }
+            gaussian.sample(arch, &means, &mut rng, &mut actions, &mut log_probs);
             actions.extend(log_probs);
             actions.into_iter().map(f32::to_bits).collect::<Vec<_>>()
         };

@@ -23,7 +23,6 @@
 
 mod elu;
 mod error;
-mod exploration;
 mod gaussian;
 mod kernel;
 mod layer;
@@ -32,7 +31,6 @@ mod policy;
 mod shape;
 
 pub use error::PolicyError;
-pub use exploration::Exploration;
 pub use gaussian::Gaussian;
 pub use policy::Policy;
 pub use shape::{LayerPlace, OUTPUTS, Shape};

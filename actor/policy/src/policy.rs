@@ -4,7 +4,6 @@ use pulp::Arch;
 use rand::Rng;
 use vocabulary::CALM;
 
-use crate::exploration::Exploration;
 use crate::gaussian::Gaussian;
 use crate::kernel::{Rows, TILE_ROWS};
 use crate::layer::{Activation, Layer};
@@ -150,16 +149,16 @@ impl Policy {
     }
 
     /// Draws actions around the means, with the log-density of each: all in `[n][joints]`, `log_probs` in `[n]`, whose
-    /// length says n. `exploration` goes on by one step; its calm robots' are drawn with [`CALM`] times the width.
+    /// length says n. In the last `calm` rows they are drawn with [`CALM`] times the width.
     ///
     /// Does not allocate.
     ///
     /// # Panics
-    /// If a slice does not hold exactly `n` rows, or exploration is of another number of robots.
+    /// If a slice does not hold exactly `n` rows, or `calm` is more.
     pub fn sample<R: Rng + ?Sized>(
         &mut self,
         observations: &[f32],
-        exploration: &mut Exploration,
+        calm: usize,
         rng: &mut R,
         actions: &mut [f32],
         means: &mut [f32],
@@ -168,22 +167,14 @@ impl Policy {
         let n = log_probs.len();
         assert_eq!(actions.len(), n * OUTPUTS, "actions of {n} rows");
         self.means(observations, n, means);
-        let [wide_trying, calm_trying] = exploration.parts();
-        let wide = wide_trying.noise.len();
-        assert_eq!(wide + calm_trying.noise.len(), n, "robots that explore");
+        let wide = n - calm;
         let (means, calm_means) = means.split_at(wide * OUTPUTS);
         let (actions, calm_actions) = actions.split_at_mut(wide * OUTPUTS);
         let (log_probs, calm_log_probs) = log_probs.split_at_mut(wide);
         self.gaussian
-            .sample(self.arch, means, wide_trying, rng, actions, log_probs);
-        self.calm.sample(
-            self.arch,
-            calm_means,
-            calm_trying,
-            rng,
-            calm_actions,
-            calm_log_probs,
-        );
+            .sample(self.arch, means, rng, actions, log_probs);
+        self.calm
+            .sample(self.arch, calm_means, rng, calm_actions, calm_log_probs);
     }
 
     /// Up to `BLOCK` rows.

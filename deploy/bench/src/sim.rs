@@ -10,7 +10,7 @@ use std::time::Instant;
 use amp::PolicyConfig;
 use anyhow::{Context, Result, ensure};
 use observation::Tables;
-use policy::{Exploration, Policy, Shape};
+use policy::{Policy, Shape};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde_json::{Value, json};
@@ -147,7 +147,6 @@ impl SimBench {
         .context("building the fleet")?;
         let mut random = Pcg64Mcg::seed_from_u64(self.seed);
         let mut rows = Rows::new(&fleet, &mut random);
-        let mut exploration = Exploration::plain(n);
         let mut measured = Measured::default();
         // Fresh robots stand; after half a second they do what random actions make them do.
         for warm in [true, false] {
@@ -167,7 +166,7 @@ impl SimBench {
                 match &mut policy {
                     Some(policy) => policy.sample(
                         fleet.observations(),
-                        &mut exploration,
+                        0,
                         &mut random,
                         &mut rows.actions,
                         &mut rows.means,

@@ -91,7 +91,6 @@ const TABLE: &[(&str, Rule, &[&str])] = &[
             "critic_first",
             "symmetry_weight",
             "symmetry_share",
-            "entropy_weight",
         ],
     ),
     ("ppo", Free, &["threads"]),

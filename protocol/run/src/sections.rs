@@ -83,9 +83,6 @@ pub struct FleetConfig {
     /// Share of robots that explore half as widely as the others (default 0). Where all do alike, a policy may stand until
     /// noise has made it step, and without noise it stands.
     pub calm_share: f32,
-    /// How long exploration's noise lasts, s: the time in which it forgets all but 37 % of itself (default 0: each control
-    /// step is drawn anew).
-    pub noise_memory: f32,
 }
 
 impl Default for RunConfig {
@@ -125,7 +122,6 @@ impl Default for FleetConfig {
             steps: 32,
             actors: 0,
             calm_share: 0.0,
-            noise_memory: 0.0,
         }
     }
 }
@@ -188,9 +184,6 @@ impl Section for FleetConfig {
         let share = self.calm_share;
         let holds = (0.0..=1.0).contains(&share);
         require(holds, "calm_share", share, "use 0, nobody, to 1, all")?;
-        let memory = self.noise_memory;
-        let holds = (0.0..=10.0).contains(&memory);
-        require(holds, "noise_memory", memory, "use 0 to 10 s")?;
         // The streams are opened for 64 publishers; more could never join.
         require(self.actors <= 64, "actors", self.actors, "use at most 64")?;
         require(

@@ -172,10 +172,9 @@ fn samples_repeat_with_the_seed_and_their_density_is_that_of_the_action() {
         let (mut actions, mut means) = (vec![0.0; n * OUTPUTS], vec![0.0; n * OUTPUTS]);
         let mut log_probs = vec![0.0; n];
         let mut rng = Pcg64::seed_from_u64(seed);
-        let mut exploration = Exploration::new(n, 20, 0.0, &mut rng);
         policy.sample(
             &observations,
-            &mut exploration,
+            20,
             &mut rng,
             &mut actions,
             &mut means,

@@ -39,9 +39,6 @@ pub struct PpoConfig {
     pub symmetry_weight: f32,
     /// Share of each minibatch that it is taken over; the critic learns from those rows mirrored.
     pub symmetry_share: f32,
-    /// Weight of the entropy bonus: what a wider σ is worth to learned exploration. Without one PPO narrows it all along,
-    /// whether or not there is anything left to find. 0.005 to 0.01 in published G1 trainers. Default 0: off.
-    pub entropy_weight: f32,
     /// Threads that rows are divided among. Sums are made in their order, so that results depend on this number and not
     /// on the machine.
     pub threads: usize,
@@ -86,7 +83,6 @@ impl Default for PpoConfig {
             critic_first: 0.0,
             symmetry_weight: 0.0,
             symmetry_share: 0.25,
-            entropy_weight: 0.0,
             threads: 2,
         }
     }
@@ -114,7 +110,6 @@ impl Section for PpoConfig {
             )
             .not_negative("symmetry_weight", self.symmetry_weight)
             .share("symmetry_share", self.symmetry_share)
-            .not_negative("entropy_weight", self.entropy_weight)
             .count("threads", self.threads, 256)
             .0
     }

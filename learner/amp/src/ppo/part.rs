@@ -109,13 +109,6 @@ impl Ppo {
             } else {
                 loss
             };
-            let loss = if self.config.entropy_weight > 0.0 && self.log_sigma_limits.is_some() {
-                let share = chunk.roles.len() as f32 / count as f32;
-                let entropy = surrogate::entropy(log_sigma.clone());
-                loss - entropy * (share * self.config.entropy_weight)
-            } else {
-                loss
-            };
             let mut gradients = loss.backward();
             actor.add_gradients(&mut gradients, actor_gradient);
             if let Some(gradient) = log_sigma.grad_remove(&mut gradients) {

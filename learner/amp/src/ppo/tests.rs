@@ -188,36 +188,6 @@ fn lessons_in_symmetry_make_the_policy_symmetric_and_spend_no_ratio() {
 }
 
 #[test]
-fn a_wider_sigma_is_worth_the_entropy_weight() {
-    let mut config = config();
-    config.exploration.kind = crate::config::ExplorationKind::Learned;
-    config.exploration.sigma = 0.3.into();
-    config.ppo.entropy_weight = 0.01;
-    let ppo = ppo(&config);
-    let mut rng = Pcg64::seed_from_u64(5);
-    // Nothing is better than anything else: what is left is the bonus, −0.01·d/d ln σ of Σ ln σ, whatever the parts.
-    let bandit = Bandit::play(&ppo, 0.3, &mut rng, |_| 0.0);
-    let rows = bandit.rows();
-    let indices: Vec<usize> = (0..rows.advantages.len()).collect();
-    let minibatch = Minibatch {
-        rows: &rows,
-        indices: &indices,
-        old_sigma: &[0.3; ACTION],
-        shift: 0.0,
-        scale: 1.0,
-    };
-    let start = ppo.actor.len() + ppo.critic.len();
-    let mut total = [0.0; ACTION];
-    for part in [0..10, 10..indices.len()] {
-        let sums = ppo.differentiate(&minibatch, part, &[0.3; ACTION]);
-        let gradient = &sums.gradient[start..];
-        total.iter_mut().zip(gradient).for_each(|(a, b)| *a += b);
-        assert!(sums.gradient[..ppo.actor.len()].iter().all(|g| *g == 0.0));
-    }
-    assert!(total.iter().all(|g| (g + 0.01).abs() < 1e-6), "{total:?}");
-}
-
-#[test]
 fn threads_change_only_the_order_of_sums() {
     let updated = |threads: usize| {
         let mut config = config();
