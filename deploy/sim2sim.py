@@ -22,13 +22,15 @@ from transfer.table import table
 
 
 def in_rapier(given, randomize):
-    """The same figures by `ampco evaluate`."""
+    """The same figures by `ampco evaluate`, a row for each command and stress."""
     from transfer.episodes import figures
 
     call = [given.ampco, "evaluate", given.run, "--json", "--episodes", str(given.episodes),
             "--seconds", str(given.seconds), "--seed", str(given.seed)]
     call += [word for numbers in given.commands for word in ("--command", ",".join(map(str, numbers)))]
     call += ["--randomize"] if randomize else []
+    # Without a row that is stressed there is nothing to ask for: the one without stress is what it does anyway.
+    call += ["--stress", text] if given.stress and (text := rows.text(given.stress)) else []
     try:
         done = subprocess.run(call, capture_output=True, text=True)
     except OSError as problem:
@@ -78,6 +80,13 @@ def stressed(given, policy, path, result):
         print("\n" + table("MuJoCo, stressed", own), flush=True)
         found += own
     result["stress"] = found
+    if given.run:
+        asked = [(label, dict(stresses)) for _ in given.commands for label, stresses in given.stress]
+        result["rapier_stress"] = [
+            row | {"stress": label, "stresses": stresses}
+            for (label, stresses), row in zip(asked, in_rapier(given, False), strict=True)
+        ]
+        print("\n" + table("rapier, stressed", result["rapier_stress"]), flush=True)
     return found
 
 

@@ -8,6 +8,10 @@ from .state import MOTORS
 
 # N·m·s/rad, of every motor: what Unitree's controllers damp with when they are passive.
 DAMPING = 3.0
+# How many times its effort a motor may be asked for. Drives cut torques to the effort many times within a control step; a
+# target that is cut to it once, at the step's beginning, leaves a motor too weak for the rest of it. This is against
+# targets that are far off only.
+HEADROOM = 2.0
 
 
 class Motors:
@@ -37,12 +41,12 @@ class Motors:
         return every
 
     def limited(self, target, kp, kd, state):
-        """Targets within the joints' range, and then such that no motor is asked for more than its effort."""
+        """Targets within the joints' range, and then such that no motor is asked for more than `HEADROOM` efforts."""
         target = np.clip(target, self.lower, self.upper)
-        # −effort ≤ kp·(target − q) − kd·q̇ ≤ effort
-        stiff = np.maximum(kp, 1e-6)
-        least = state.position + (kd * state.velocity - self.effort) / stiff
-        most = state.position + (kd * state.velocity + self.effort) / stiff
+        # −asked ≤ kp·(target − q) − kd·q̇ ≤ asked
+        stiff, asked = np.maximum(kp, 1e-6), HEADROOM * self.effort
+        least = state.position + (kd * state.velocity - asked) / stiff
+        most = state.position + (kd * state.velocity + asked) / stiff
         return np.clip(target, least, most)
 
     def torque(self, target, kp, kd, state):

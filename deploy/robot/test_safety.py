@@ -84,19 +84,19 @@ class Targets(unittest.TestCase):
     def test_what_can_be_done_stays(self):
         self.assertEqual(self.limited(KNEE, 0.5)[0], 0.5)
 
-    def test_a_motor_is_asked_for_its_effort_at_most(self):
-        # Knee: 150 N·m/rad, 4 N·m·s/rad, 139 N·m. From 0 a target of 2 rad would take 300 N·m: 139/150 = 0.9267 rad do.
+    def test_a_motor_is_asked_for_twice_its_effort_at_most(self):
+        # Knee: 150 N·m/rad, 4 N·m·s/rad, 139 N·m. From 0 a target of 2 rad would take 300 N·m: 278/150 = 1.8533 rad do.
         target, torque = self.limited(KNEE, 2.0)
-        self.assertAlmostEqual(target, 139 / 150)
-        self.assertAlmostEqual(torque, 139.0)
-        # While it turns at 10 rad/s damping takes 40 of them back: (139 + 40)/150.
-        target, torque = self.limited(KNEE, 2.0, velocity=10.0)
-        self.assertAlmostEqual(target, 179 / 150)
-        self.assertAlmostEqual(torque, 139.0)
-        # And backwards from 2 rad: 2 − (139 + 40)/150 while it turns at −10 rad/s.
-        target, torque = self.limited(KNEE, 0.0, position=2.0, velocity=-10.0)
-        self.assertAlmostEqual(target, 2 - 179 / 150)
-        self.assertAlmostEqual(torque, -139.0)
+        self.assertAlmostEqual(target, 278 / 150)
+        self.assertAlmostEqual(torque, 278.0)
+        # While it turns at 10 rad/s damping takes 40 of them back: (278 + 40)/150.
+        target, torque = self.limited(KNEE, 2.5, velocity=10.0)
+        self.assertAlmostEqual(target, 318 / 150)
+        self.assertAlmostEqual(torque, 278.0)
+        # And backwards from 2.5 rad: 2.5 − (278 + 40)/150 while it turns at −10 rad/s.
+        target, torque = self.limited(KNEE, 0.0, position=2.5, velocity=-10.0)
+        self.assertAlmostEqual(target, 2.5 - 318 / 150)
+        self.assertAlmostEqual(torque, -278.0)
 
     def test_a_target_is_within_the_joints_range(self):
         self.assertAlmostEqual(self.limited(KNEE, -1.0)[0], -0.087267)

@@ -89,7 +89,7 @@ def parser(about):
     add("--episodes", type=int, default=32, help="episodes per command (default: 32)")
     add("--seconds", type=float, default=20.0, help="length of an episode (default: 20)")
     add("--seed", type=int, default=1, help="of starts, Table I and stresses: the same seed, the same figures")
-    add("--run", help="also evaluate this run, folder or checkpoint in rapier, with `ampco evaluate`")
+    add("--run", help="also evaluate this run, folder or checkpoint in rapier, with `ampco evaluate`, under the same stresses")
     add("--ampco", default="target/release/ampco", help="the program (default: target/release/ampco)")
     add("--json", metavar="FILE", type=file(), help="write all figures")
     add("--figure", metavar="FILE", type=file(*FORMATS), help="draw Figure 5, or what stresses do, as PNG, SVG or PDF")
@@ -116,7 +116,5 @@ def arguments(about):
         made.error(f"--seconds {given.seconds}: give 0.02 to 3600")
     if given.seed < 0:
         made.error(f"--seed {given.seed}: give 0 or more")
-    if given.stress and given.run:
-        made.error("--run with --stress: rapier knows no stresses; give one of them")
     given.commands = given.commands or [speed(number) for number in SPEEDS]
     return given

@@ -62,6 +62,11 @@ def _label(stresses):
     return "+".join(f"{name}={value:g}" for name, value in stresses)
 
 
+def text(chosen):
+    """What `ampco evaluate --stress` reads as these rows; it begins with the one without stress by itself."""
+    return ",".join("+".join(f"{name}={value!r}" for name, value in row) for _, row in chosen if row)
+
+
 def remarks(chosen, terms, timestep, seconds):
     """What of rows comes to something else than it says: `terms` are names that the policy sees; times in s."""
     values = {name: {value for _, row in chosen for stress, value in row if stress == name} for name in STRESSES}

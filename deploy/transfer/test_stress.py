@@ -12,7 +12,7 @@ import numpy as np
 from .episodes import robot_of, walk
 from .model import load
 from .policy import Policy
-from .rows import StressError, explained, remarks, rows
+from .rows import StressError, explained, remarks, rows, text
 from .stress import BUMPS, STRESSES
 
 EXPORT = Path(os.environ.get("AMPCO_EXPORT", "policy"))
@@ -39,6 +39,12 @@ class Rows(unittest.TestCase):
         self.assertEqual(half.pop("commands"), 4)  # seconds: half as often
         for name, value in half.items():
             self.assertEqual(value, STRESSES[name].default / 2)
+
+    def test_rows_can_be_asked_of_another_program(self):
+        asked = rows("delay,gains=0.8+payload=0.5,half")
+        self.assertTrue(text(asked).startswith("delay=20.0,gains=0.8+payload=0.5,delay=10.0+"))
+        self.assertEqual([row for _, row in rows(text(asked))], [row for _, row in asked])
+        self.assertEqual(text(rows("none")), "")
 
     def test_what_is_no_stress_is_refused_with_what_there_is(self):
         for text, words in (

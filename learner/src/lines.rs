@@ -146,6 +146,9 @@ impl Lines {
         };
         let guide = self.guidance.after(state.reported(), report_again)?;
         state.remembered = self.guidance.remember();
+        if let Some(directive) = &guide.directive {
+            state.held = directive.held;
+        }
         Ok(guide)
     }
 
@@ -170,7 +173,7 @@ impl Lines {
             terms.layout,
             terms.lockstep,
         )
-        .after(state.samples());
+        .after(state.ramped());
         self.weights
             .broadcast(header, state.learning.policy_flat())
             .with_context(|| format!("broadcasting policy version {}", state.iteration))

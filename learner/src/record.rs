@@ -63,6 +63,8 @@ pub(crate) struct DecisionFigures {
     breakout_rate: Option<f64>,
     breakout_threshold: Option<f64>,
     style_trend: Option<f64>,
+    /// Iterations in which the run's ramps stood still so far.
+    held: Option<u64>,
     switched_at: Option<u64>,
     lower_bound: Option<f64>,
     upper_bound: Option<f64>,
@@ -82,6 +84,7 @@ impl DecisionFigures {
             breakout_rate: directive.breakout_rate(),
             breakout_threshold: Some(directive.threshold),
             style_trend: directive.trend(),
+            held: Some(directive.held),
             switched_at: directive.switched_at(),
             lower_bound,
             upper_bound,

@@ -40,6 +40,8 @@ pub(crate) struct State {
     /// How the last iteration was paid, to be reported again after a resume.
     pub(crate) last_report: Option<RewardReport>,
     pub(crate) remembered: Option<Weighting>,
+    /// Iterations in which the run's ramps stood still, as the scheduler counts.
+    pub(crate) held: u64,
     generator: Pcg64Mcg,
     /// The iteration of the newest checkpoint; writing it again would lose the actors' share.
     saved: Option<u64>,
@@ -52,6 +54,8 @@ struct Shell {
     seconds: f64,
     last_report: Option<RewardReport>,
     remembered: Option<Weighting>,
+    #[serde(default)]
+    held: u64,
     generator: Pcg64Mcg,
     #[serde(default)]
     earned: Earned,
@@ -74,6 +78,7 @@ impl State {
             seconds_before: 0.0,
             last_report: None,
             remembered: None,
+            held: 0,
             // Any stream but those that the networks' own seeds begin.
             generator: Pcg64Mcg::seed_from_u64(config.run.seed ^ 0x0045_5850_4552_5453),
             saved: None,
@@ -165,6 +170,7 @@ impl State {
         self.seconds_before = shell.seconds;
         self.last_report = shell.last_report;
         self.remembered = shell.remembered;
+        self.held = shell.held;
         self.generator = shell.generator;
         self.earned = shell.earned;
         Ok(())
@@ -216,7 +222,7 @@ impl State {
             .iterate(batch, &mut experts, rule, granularity);
         if let Ok(report) = &report {
             // What an easier task paid before would pass for skill.
-            if self.samples() as f64 > config.settled {
+            if self.ramped() as f64 > config.settled {
                 self.earned.add(report, batch.robots());
             }
             self.last_report = Some(RewardReport {
@@ -241,6 +247,12 @@ impl State {
     /// count.
     pub(crate) fn samples(&self) -> u64 {
         self.learning.samples()
+    }
+
+    /// Samples that ramps of task and robots have gone on for: without those of iterations in which they stood still.
+    pub(crate) fn ramped(&self) -> u64 {
+        let batch = self.last_report.map_or(0, |report| report.samples);
+        self.samples().saturating_sub(self.held * batch)
     }
 
     /// The newest iteration that the scheduler was told of; 0 before the first.
@@ -270,6 +282,7 @@ impl State {
             seconds,
             last_report: self.last_report,
             remembered: self.remembered,
+            held: self.held,
             generator: self.generator.clone(),
             earned,
         };

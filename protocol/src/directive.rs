@@ -30,6 +30,8 @@ pub struct Directive {
     pub iteration: u64,
     /// Iteration whose report brought phase II; `u64::MAX` in phase I.
     pub switched_at: u64,
+    /// Iterations in which the run's ramps stood still so far.
+    pub held: u64,
     /// 1 or 2.
     pub phase: u32,
     /// Which rule: 0 fixed weights, 1 guided, 2 AdaMimic, 3 bounded.

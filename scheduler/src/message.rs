@@ -28,6 +28,7 @@ pub(crate) fn directive(learner: u64, decision: &Decision) -> Directive {
         learner,
         iteration: decision.iteration,
         switched_at: decision.switched_at().unwrap_or(u64::MAX),
+        held: decision.held,
         phase: decision.phase.number(),
         rule,
         first,
@@ -64,6 +65,7 @@ mod tests {
             breakout_rate: None,
             threshold: 0.05,
             trend: Some(-0.5),
+            held: 3,
         }
     }
 
@@ -72,6 +74,7 @@ mod tests {
         let message = directive(7, &decision(Phase::One));
         assert_eq!((message.learner, message.iteration), (7, 41));
         assert_eq!((message.phase, message.switched_at()), (1, None));
+        assert_eq!(message.held, 3);
         assert_eq!((message.rule, message.granularity), (3, 1));
         assert_eq!((message.first, message.second), (0.25, 0.75));
         assert_eq!((message.bounds(), message.breakout_rate()), (None, None));

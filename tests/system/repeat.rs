@@ -96,6 +96,15 @@ fn stopping_and_resuming_changes_no_bit() {
 }
 
 #[test]
+fn nor_does_it_where_the_task_waits_for_robots_that_stay_up() {
+    let metrics = stop_and_resume(&["--set", GROWING, "--set", "scheduler.pace=progress"]);
+    // Nothing is learned in eight iterations: what grows waits all along, one iteration after the other.
+    for (before, line) in metrics.iter().enumerate().skip(1) {
+        assert_eq!(line["held"].as_u64(), Some(before as u64), "{line}");
+    }
+}
+
+#[test]
 fn nor_does_it_with_past_frames_and_a_critic_that_sees_more() {
     let metrics = stop_and_resume(&[
         "--set",

@@ -182,7 +182,7 @@ impl Environment {
             }
             self.push_in = table.draw_push_interval(&mut self.random);
         }
-        let targets = actuator::targets(action);
+        let mut targets = actuator::targets(action);
         match &mut self.lot {
             None => bodies.set_targets(index, &targets),
             Some(lot) => {
@@ -192,6 +192,7 @@ impl Environment {
                 }
                 self.truth.lot.force = force;
                 bodies.set_force(index, force);
+                lot.hold(setting.event(index), &mut targets, &mut self.random);
                 bodies.set_targets_by_step(index, &lot.targets(&targets));
             }
         }

@@ -2,15 +2,17 @@
 //! does not exist, and draws nothing.
 //!
 //! Separate from Table I, which is the paper's: late commands and late sensors, motors that are weaker, stiffer or rubbed
-//! on, sensors that stand aslant, loads, slopes and pushes that last. All but the force are drawn once for an episode
+//! on, sensors that stand aslant, loads, slopes, pushes that last and arms that are held. All but these two are drawn once for an episode
 //! ([`lot::Lot`]); reward, features and falls see the true state.
 
+pub(crate) mod arms;
 pub(crate) mod force;
 pub(crate) mod lot;
 pub(crate) mod senses;
 
 use crate::randomization::{RandomizationConfig, Row};
-use crate::time::{CONTROL_STEP, PHYSICS_STEP, SUBSTEPS};
+use crate::time::{PHYSICS_STEP, SUBSTEPS};
+pub use arms::Hold;
 pub use force::Force;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -68,6 +70,9 @@ pub struct EventConfig {
     /// A push that lasts, now and then: a horizontal force on the torso, N, in any direction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub force: Option<Force>,
+    /// Arms that are held from outside, now and then, off the default pose, rad, whatever the policy wants of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub arms: Option<Hold>,
     /// Whether motors have less torque the faster they turn, as those of the robot do ([`g1::motors`]). Default: all of it.
     #[serde(skip_serializing_if = "is_off")]
     pub torque_speed: bool,
@@ -98,7 +103,7 @@ const FACTORS: [f32; 2] = [0.1, 10.0];
 const FACTOR: &str = "a factor of what the robot's table says";
 
 /// All rows in the order of [`EventConfig`].
-const KINDS: [Kind; 13] = [
+const KINDS: [Kind; 14] = [
     kind("action_delay", DELAYS, 0.0, DELAY),
     kind("observation_delay", DELAYS, 0.0, DELAY),
     kind("stiffness", FACTORS, 1.0, FACTOR),
@@ -152,6 +157,12 @@ const KINDS: [Kind; 13] = [
         0.0,
         "newtons; the robot weighs 315 N",
     ),
+    kind(
+        "arms",
+        [0.0, 1.5],
+        0.0,
+        "radians off the default pose; a right angle is 1.57",
+    ),
 ];
 
 /// The rows of the table by their keys.
@@ -186,6 +197,7 @@ impl Default for EventConfig {
             ground_friction: None,
             slope: None,
             force: None,
+            arms: None,
             torque_speed: false,
         }
     }
@@ -204,16 +216,17 @@ impl Section for EventConfig {
                 within(kind.name, checked)?;
             }
         }
-        let Some(Force {
-            duration, seconds, ..
-        }) = self.force
-        else {
-            return Ok(());
-        };
-        let why = "seconds; what lasts longer is a slope";
-        range_between("force.duration", duration, [PHYSICS_STEP, 10.0], why)?;
-        let why = "seconds, from one control step to an hour";
-        range_between("force.seconds", seconds, [CONTROL_STEP, 3_600.0], why)
+        let hour = "seconds, from one control step to an hour";
+        if let Some(force) = self.force {
+            let why = "seconds; what lasts longer is a slope";
+            range_between("force.duration", force.duration, [PHYSICS_STEP, 10.0], why)?;
+            range_between("force.seconds", force.seconds, arms::TIMES, hour)?;
+        }
+        if let Some(hold) = self.arms {
+            range_between("arms.duration", hold.duration, arms::TIMES, hour)?;
+            range_between("arms.seconds", hold.seconds, arms::TIMES, hour)?;
+        }
+        Ok(())
     }
 }
 
@@ -237,6 +250,7 @@ impl EventConfig {
             of(&mut self.ground_friction),
             of(&mut self.slope),
             self.force.as_mut().map(|force| &mut force.range),
+            self.arms.as_mut().map(|arms| &mut arms.range),
         ]
     }
 

@@ -218,6 +218,8 @@ mod tests {
             ("event.slope.range", "rad"),
             ("event.force.range", "N"),
             ("event.force.duration", "s"),
+            ("event.arms.range", "rad"),
+            ("event.arms.duration", "s"),
             ("discriminator.command_blur", "m/s, m/s, rad/s"),
             ("ppo.critic_first", "samples"),
         ] {

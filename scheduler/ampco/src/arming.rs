@@ -40,7 +40,7 @@ pub struct Arming {
     rise_share: f64,
     last_share: f64,
     smoothing: f64,
-    /// The iteration from which on nothing of the run moves by the number of samples.
+    /// The iteration from which on nothing of the run moves, if ramps never stand still.
     settled: u64,
     count: u64,
     smoothed: f64,
@@ -72,13 +72,14 @@ impl Arming {
         }
     }
 
-    /// Takes an iteration's report into account, every number of it finite.
-    pub fn observe(&mut self, report: &Report) -> Arm {
+    /// Takes an iteration's report into account, every number of it finite; ramps stood still in `held` iterations so far.
+    pub fn observe(&mut self, report: &Report, held: u64) -> Arm {
         let ready = match self.kind {
             ArmKind::WindowFull => return Arm::Armed,
             ArmKind::AfterRise => self.has_risen(report.style_mean),
             ArmKind::EpisodesLast => {
-                self.lasts(report.episode_share) && report.iteration >= self.settled
+                self.lasts(report.episode_share)
+                    && report.iteration.saturating_sub(held) >= self.settled
             }
         };
         match (std::mem::replace(&mut self.armed, ready), ready) {
@@ -147,7 +148,7 @@ mod tests {
 
     /// Answers to rewards.
     fn style(arming: &mut Arming, means: &[f64]) -> Vec<Arm> {
-        let answer = |mean: &f64| arming.observe(&report(*mean, None));
+        let answer = |mean: &f64| arming.observe(&report(*mean, None), 0);
         means.iter().map(answer).collect()
     }
 
@@ -203,7 +204,7 @@ mod tests {
             Some(1.0),
         ];
         // Nothing yet; 0.4; (0.4 + 0.9)/2 = 0.65; + (1 − 0.65)/2 = 0.825 ≥ 0.8; none ended: as it was; 0.6125; 0.80625.
-        let seen = shares.map(|share| arming.observe(&report(0.3, share)));
+        let seen = shares.map(|share| arming.observe(&report(0.3, share), 0));
         assert_eq!(
             seen,
             [Waiting, Waiting, Waiting, Begins, Armed, Waiting, Begins]
@@ -212,18 +213,22 @@ mod tests {
 
     #[test]
     fn robots_that_last_wait_for_a_task_that_stands_still() {
-        let seen = |kind| {
+        let seen = |kind, held| {
             let mut arming = arming(kind, 0.8, 1.0).settling(3);
             [1, 2, 3, 4].map(|iteration| {
-                arming.observe(&Report {
+                let report = Report {
                     iteration,
                     ..report(0.3, Some(1.0))
-                })
+                };
+                arming.observe(&report, held)
             })
         };
-        let lasting = seen(ArmKind::EpisodesLast);
+        let lasting = seen(ArmKind::EpisodesLast, 0);
         assert_eq!(lasting, [Waiting, Waiting, Begins, Armed]);
+        // Ramps that stood still once arrive an iteration later.
+        let held = seen(ArmKind::EpisodesLast, 1);
+        assert_eq!(held, [Waiting, Waiting, Waiting, Begins]);
         // Algorithm 1 as written knows of no such thing.
-        assert_eq!(seen(ArmKind::WindowFull), [Armed; 4]);
+        assert_eq!(seen(ArmKind::WindowFull, 0), [Armed; 4]);
     }
 }

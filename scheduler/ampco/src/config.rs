@@ -27,7 +27,9 @@ pub struct ScheduleConfig {
     pub granularity: Granularity,
     /// When convergence is tested. Default: as Algorithm 1 is written.
     pub arm: ArmKind,
-    /// With `arm = "after_rise"` or `"episodes_last"`: iterations over which the reward, or the share, is smoothed.
+    /// What ramps of task, robots and motion go by. Default: the number of samples.
+    pub pace: PaceKind,
+    /// With `arm = "after_rise"` or `"episodes_last"`, or `pace = "progress"`: iterations over which the reward, or the share, is smoothed.
     pub smoothing: f64,
     /// Whose mean and deviation Eq. 13 takes. Default: the batch in which convergence was found, as Algorithm 1's inputs
     /// are rˢ and σˢ.
@@ -44,6 +46,7 @@ impl Default for ScheduleConfig {
             ceiling: CeilingKind::Bound,
             granularity: Granularity::Sample,
             arm: ArmKind::WindowFull,
+            pace: PaceKind::Samples,
             smoothing: 20.0,
             bounds_from: BoundsSource::Batch,
         }
@@ -62,6 +65,17 @@ pub enum ArmKind {
     /// Imitation is for robots that stay up: a style reward that stands still while they fall, or while commands still
     /// widen, has paused, not converged.
     EpisodesLast,
+}
+
+/// What ramps go by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PaceKind {
+    /// The samples that were used.
+    Samples,
+    /// Those of them that were used while episodes lasted: ramps stand still while their smoothed mean length is below nine
+    /// tenths of the longest possible. Those of `[ppo]` and `[exploration]` go by the samples all the same.
+    Progress,
 }
 
 /// Where mean and deviation of Eq. 13 come from.

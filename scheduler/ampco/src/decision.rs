@@ -109,6 +109,8 @@ pub struct Decision {
     pub threshold: f64,
     /// Slope of the reward window, in reward per iteration, once it holds two values.
     pub trend: Option<f64>,
+    /// Iterations in which the run's ramps stood still so far, see [`crate::PaceKind`].
+    pub held: u64,
 }
 
 impl Decision {

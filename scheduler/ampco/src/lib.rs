@@ -45,6 +45,7 @@ pub mod breakout;
 mod config;
 mod decision;
 mod method;
+mod pace;
 mod ranks;
 mod report;
 mod schedule;
@@ -53,7 +54,7 @@ mod weights;
 pub mod window;
 
 pub use bounds::Bounds;
-pub use config::{ArmKind, BoundsSource, ScheduleConfig};
+pub use config::{ArmKind, BoundsSource, PaceKind, ScheduleConfig};
 pub use decision::{Decision, Phase, Switch, Warning};
 pub use method::{AfterConvergence, Method};
 pub use report::{Report, ReportError};

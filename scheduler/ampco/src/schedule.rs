@@ -2,6 +2,7 @@
 
 use crate::arming::{Arm, Arming};
 use crate::breakout::{Detector, Observation};
+use crate::pace::Pace;
 use crate::weighting::guidance::Ceiling;
 use crate::{
     AfterConvergence, Bounds, BoundsSource, Decision, Granularity, Phase, Report, ReportError,
@@ -15,6 +16,7 @@ pub struct Schedule {
     config: ScheduleConfig,
     phase: Phase,
     arming: Arming,
+    pace: Pace,
     detector: Detector,
     style_ceiling: Ceiling,
     task_ceiling: Ceiling,
@@ -28,6 +30,7 @@ impl Schedule {
         Ok(Self {
             phase: Phase::One,
             arming: Arming::new(&config),
+            pace: Pace::new(&config),
             detector: Detector::new(config.window, config.percentile),
             style_ceiling: Ceiling::of_style(config.ceiling),
             task_ceiling: Ceiling::of_task(config.ceiling),
@@ -53,7 +56,8 @@ impl Schedule {
         self.newest = Some(report.iteration);
         self.style_ceiling.observe(report.style_mean);
         self.task_ceiling.observe(report.task_mean);
-        let arm = self.arming.observe(&report);
+        self.pace.observe(report.episode_share);
+        let arm = self.arming.observe(&report, self.pace.held());
         if arm == Arm::Begins {
             self.detector.clear();
         }
@@ -72,6 +76,7 @@ impl Schedule {
             breakout_rate: self.detector.breakout_rate(),
             threshold: self.detector.threshold(),
             trend: self.detector.rewards().slope(),
+            held: self.pace.held(),
         }
     }
 

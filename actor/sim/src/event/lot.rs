@@ -3,6 +3,7 @@
 //! Separate from the table because it has a life: it remembers the last targets and what the sensors told, and goes into
 //! snapshots.
 
+use super::arms::Held;
 use super::force::Pressed;
 use super::senses::Senses;
 use super::{EventConfig, GREATEST_DELAY};
@@ -37,6 +38,7 @@ pub(crate) struct Lot {
     curves: bool,
     senses: Senses,
     pressed: Pressed,
+    held: Held,
     /// Targets of the last two control steps as the motors take them, the newer first, rad.
     targets: [[f32; JOINTS]; 2],
 }
@@ -58,6 +60,7 @@ impl Lot {
             curves: table.torque_speed,
             senses,
             pressed: Pressed::default(),
+            held: Held::default(),
             targets: [[0.0; JOINTS]; 2],
         };
         lot.senses.encoder = each(table.encoder_offset, 0.0, rng);
@@ -76,6 +79,7 @@ impl Lot {
             lot.down = upright.inverse_transform_vector(&-Vector3::z());
         }
         lot.pressed = Pressed::new(table.force.as_ref(), rng);
+        lot.held = Held::new(table.arms.as_ref(), rng);
         lot
     }
 
@@ -130,6 +134,17 @@ impl Lot {
     ) -> ([f32; 3], bool) {
         let row = table.and_then(|table| table.force.as_ref());
         self.pressed.step(row, rng)
+    }
+
+    /// Holds the arms in the coming control step, if somebody does: `targets` are the policy's, rad.
+    pub(crate) fn hold(
+        &mut self,
+        table: Option<&EventConfig>,
+        targets: &mut [f32; JOINTS],
+        rng: &mut impl Rng,
+    ) {
+        let row = table.and_then(|table| table.arms.as_ref());
+        self.held.step(row, targets, rng);
     }
 
     /// After a control step.

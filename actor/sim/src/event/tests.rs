@@ -57,6 +57,8 @@ fn every_row_has_ends_with_a_reason() {
     };
     assert_eq!(force("duration = [0.0, 0.1]"), "force.duration");
     assert_eq!(force("seconds = [4.0, 3.0]"), "force.seconds");
+    let arms = read("arms = { range = [0.0, 0.5], duration = [0.0, 1.0] }");
+    assert_eq!(arms.validate().unwrap_err().path, "arms.duration");
 }
 
 #[test]
