@@ -84,8 +84,7 @@ fn a_gate_that_is_killed_again_and_again_is_made_good() {
         let took = whole_again(&spread, 2);
         assert!(took < Duration::from_secs(20), "{took:?}");
     }
-    let account = end(&spread, group, host);
-    println!("{account:?}");
+    end(&spread, group, host);
 }
 
 #[test]

@@ -30,6 +30,7 @@ fn busy() -> f64 {
 }
 
 #[tokio::test]
+#[expect(clippy::print_stdout, reason = "a figure to be read")]
 async fn a_rollout_arrives_and_is_acknowledged() {
     let gate = Listening::begin().await;
     let line = gate.line(hello());
