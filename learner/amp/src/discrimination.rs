@@ -224,7 +224,10 @@ impl Discriminator {
             let rows = |from: &[f32]| tensor(from[numbers.clone()].to_vec(), width, &device);
             let expert = network.forward_all(rows(experts));
             let policy_scores = network.forward(rows(policy));
-            let penalty = losses::gradient_penalty(network.input_gradient(&expert.hidden), count);
+            // Of Eq. 5's o, the states: how far off the command motion may be, the blur says.
+            let gradient = network.input_gradient(&expert.hidden);
+            let along_states = gradient.narrow(1, 0, self.config.frames * self.features);
+            let penalty = losses::gradient_penalty(along_states, count);
             let (of_experts, of_policy) = match self.config.loss {
                 LossKind::LeastSquares => (
                     losses::expert_loss(expert.output.clone(), count),

@@ -41,8 +41,8 @@ pub fn score_of_logit(logit: f32) -> f32 {
 
 /// L_GP = E over experts of ‖∇D(o_t, o_{t+1})‖²   (Eq. 5)
 ///
-/// `input_gradients` `[n, width]`, with respect to what the discriminator sees, that is to normalised observations; a part
-/// of `count` expert windows.
+/// `input_gradients` `[n, width]`, with respect to the normalised states that the discriminator sees; a part of `count`
+/// expert windows.
 pub fn gradient_penalty(input_gradients: Tensor<2>, count: usize) -> Tensor<1> {
     input_gradients.square().sum() / count as f32
 }

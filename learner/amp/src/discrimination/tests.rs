@@ -164,11 +164,16 @@ fn motion_that_is_not_what_was_asked_for_is_told_apart() {
     }
     let (obedient, other) = (rows(0.4, &mut rng), rows(0.0, &mut rng));
     let (obedient, other) = (seen(&obedient), seen(&other));
-    for _ in 0..60 {
-        judge.update(&obedient, &other).expect("finite");
+    // However flat the penalty keeps it along states. Where it held for what is asked too, the second came to 0.15.
+    for (penalty, apart) in [(1.0, 0.5), (20.0, 0.25)] {
+        let mut judge = judge.clone();
+        judge.config.gradient_penalty = penalty;
+        for _ in 0..60 {
+            judge.update(&obedient, &other).expect("finite");
+        }
+        let (expert, policy) = (mean_score(&judge, &obedient), mean_score(&judge, &other));
+        assert!(expert > policy + apart, "{penalty}: {expert} {policy}");
     }
-    let (expert, policy) = (mean_score(&judge, &obedient), mean_score(&judge, &other));
-    assert!(expert > policy + 0.5, "{expert} {policy}");
 }
 
 #[test]

@@ -2,8 +2,8 @@
 //!
 //! Separate because windows are kept as they are measured, a command behind the states if that is seen, and only here
 //! become what the network takes: normalised states, and instead of the command how far the velocity is off it. The
-//! penalty (Eq. 5) keeps the judge flat along what it is given: of the command itself it hardly took notice, and
-//! found standing good style whatever was asked for.
+//! penalty (Eq. 5) keeps the judge flat along states, and only along them: where it held for what is asked too, standing
+//! was good style whatever that was.
 
 use crate::COMMAND;
 use crate::config::DiscriminatorConfig;
