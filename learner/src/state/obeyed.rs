@@ -57,6 +57,7 @@ const CASES: &[(&str, &str, &str)] = &[
     ("ppo.critic_first", "", "1e9"),
     ("ppo.symmetry_weight", "ppo.mirrored_share=0.0", "0.5"),
     ("ppo.symmetry_share", "ppo.symmetry_weight=0.5", "0.75"),
+    ("ppo.off_policy", "", "v_trace"),
     ("ppo.threads", "", "3"),
     ("discriminator.steps", "", "3"),
     ("discriminator.batch", "", "16"),

@@ -106,8 +106,16 @@ fn v_trace_changes_what_an_older_policy_made_and_hardly_what_the_present_one_did
         config.ppo.off_policy = off_policy;
         let mut learning = Learning::new(config, simple(), 11).expect("usable");
         let mut batch = batch(&learning, 0);
+        // What first actors answer is near 0, and so are these actions: their density is that of the mean.
+        batch.actions.fill(0.0);
+        let half_log_tau = 0.5 * std::f32::consts::TAU.ln();
+        let density: f32 = learning
+            .sigma()
+            .iter()
+            .map(|s| -s.ln() - half_log_tau)
+            .sum();
         // As if the policy that acted had been so much surer.
-        batch.log_probs.iter_mut().for_each(|x| *x += older);
+        batch.log_probs.fill(density + older);
         let mut experts = |rows: &mut [f32]| rows.fill(0.5);
         let report = learning.iterate(&batch, &mut experts, RULE, Granularity::Sample);
         report.expect("finite");
@@ -119,8 +127,7 @@ fn v_trace_changes_what_an_older_policy_made_and_hardly_what_the_present_one_did
         let pairs = ignored.iter().zip(&corrected);
         pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
     };
-    // First actors answer next to nothing, as the batch says they did.
-    assert!(distance(0.0) < 0.02, "{}", distance(0.0));
+    assert!(distance(0.0) < 0.05, "{}", distance(0.0));
     assert!(distance(2.0) > 0.1, "{}", distance(2.0));
 }
 
