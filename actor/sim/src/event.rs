@@ -2,20 +2,20 @@
 //! does not exist, and draws nothing.
 //!
 //! Separate from Table I, which is the paper's: late commands and late sensors, motors that are weaker, stiffer or rubbed
-//! on, sensors that stand aslant, loads, slopes, pushes that last and arms that are held. All but these two are drawn once for an episode
-//! ([`lot::Lot`]); reward, features and falls see the true state.
+//! on, sensors that stand aslant, loads, slopes, pushes that last and arms that are held. All but these two are drawn once
+//! for an episode ([`lot::Lot`]); reward, features and falls see the true state.
 
 pub(crate) mod arms;
 pub(crate) mod force;
 pub(crate) mod lot;
 pub(crate) mod senses;
+mod spell;
 
 use crate::randomization::{RandomizationConfig, Row};
-use crate::time::{PHYSICS_STEP, SUBSTEPS};
-pub use arms::Hold;
-pub use force::Force;
+use crate::time::{CONTROL_STEP, PHYSICS_STEP, SUBSTEPS};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+pub use spell::Spell;
 use vocabulary::invalid::{self, Invalid, range_between, within};
 use vocabulary::{Checked, Ramp, Section};
 
@@ -69,10 +69,10 @@ pub struct EventConfig {
     pub slope: Option<Row>,
     /// A push that lasts, now and then: a horizontal force on the torso, N, in any direction.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub force: Option<Force>,
+    pub force: Option<Spell>,
     /// Arms that are held from outside, now and then, off the default pose, rad, whatever the policy wants of them.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub arms: Option<Hold>,
+    pub arms: Option<Spell>,
     /// Whether motors have less torque the faster they turn, as those of the robot do ([`g1::motors`]). Default: all of it.
     #[serde(skip_serializing_if = "is_off")]
     pub torque_speed: bool,
@@ -216,15 +216,13 @@ impl Section for EventConfig {
                 within(kind.name, checked)?;
             }
         }
-        let hour = "seconds, from one control step to an hour";
         if let Some(force) = self.force {
             let why = "seconds; what lasts longer is a slope";
-            range_between("force.duration", force.duration, [PHYSICS_STEP, 10.0], why)?;
-            range_between("force.seconds", force.seconds, arms::TIMES, hour)?;
+            force.check("force", [PHYSICS_STEP, 10.0], why)?;
         }
-        if let Some(hold) = self.arms {
-            range_between("arms.duration", hold.duration, arms::TIMES, hour)?;
-            range_between("arms.seconds", hold.seconds, arms::TIMES, hour)?;
+        if let Some(arms) = self.arms {
+            let why = "seconds, from one control step to an hour";
+            arms.check("arms", [CONTROL_STEP, 3_600.0], why)?;
         }
         Ok(())
     }

@@ -26,22 +26,35 @@ pub struct Returns<'a> {
 /// # Panics
 /// If a slice does not fit the rollout.
 pub fn advantages(segment: Segment, from: Returns<'_>, gamma: f32, lambda: f32, out: &mut [f32]) {
-    let robots = segment.environments;
     assert_eq!(out.len(), segment.rows(), "one advantage per row");
+    backward(segment, from, gamma, |row, delta, next| {
+        out[row] = delta + gamma * lambda * next;
+        out[row]
+    });
+}
+
+/// Goes through each environment's rows from the last to the first: what `carry` makes of a row, its δ_t and what it made
+/// of the row after it is carried to the row before. Across no end, nor into the last row, is anything but 0 carried.
+pub(crate) fn backward(
+    segment: Segment,
+    from: Returns<'_>,
+    gamma: f32,
+    mut carry: impl FnMut(usize, f32, f32) -> f32,
+) {
+    let robots = segment.environments;
     for robot in 0..robots {
         let mut next_value = from.last_values[robot];
-        let mut next_advantage = 0.0;
+        let mut carried = 0.0;
         for step in (0..segment.steps).rev() {
             let row = step * robots + robot;
             let end = from.ends[row];
             if end != RUNNING {
                 let cut = end == Cause::TimeOut.code();
                 next_value = if cut { from.timeout_values[robot] } else { 0.0 };
-                next_advantage = 0.0;
+                carried = 0.0;
             }
             let delta = from.rewards[row] + gamma * next_value - from.values[row];
-            next_advantage = delta + gamma * lambda * next_advantage;
-            out[row] = next_advantage;
+            carried = carry(row, delta, carried);
             next_value = from.values[row];
         }
     }

@@ -4,8 +4,7 @@
 //! the present policy would have gone on as the older one did, and is the further off the further the two are apart.
 
 use crate::Segment;
-use crate::gae::Returns;
-use vocabulary::{Cause, RUNNING};
+use crate::gae::{Returns, backward};
 
 /// ½·ln 2π
 const HALF_LOG_TAU: f32 = 0.918_938_5;
@@ -28,28 +27,13 @@ pub fn advantages(
     advantages: &mut [f32],
     errors: &mut [f32],
 ) {
-    let robots = segment.environments;
     assert_eq!(advantages.len(), segment.rows(), "one advantage per row");
     assert_eq!(errors.len(), segment.rows(), "one error per row");
-    for robot in 0..robots {
-        let mut next_value = from.last_values[robot];
-        let mut next_error = 0.0;
-        for step in (0..segment.steps).rev() {
-            let row = step * robots + robot;
-            let end = from.ends[row];
-            if end != RUNNING {
-                let cut = end == Cause::TimeOut.code();
-                next_value = if cut { from.timeout_values[robot] } else { 0.0 };
-                next_error = 0.0;
-            }
-            let delta = from.rewards[row] + gamma * next_value - from.values[row];
-            let weight = log_ratios[row].min(0.0).exp();
-            advantages[row] = delta + gamma * lambda * next_error;
-            next_error = weight * (delta + gamma * lambda * next_error);
-            errors[row] = next_error;
-            next_value = from.values[row];
-        }
-    }
+    backward(segment, from, gamma, |row, delta, next_error| {
+        advantages[row] = delta + gamma * lambda * next_error;
+        errors[row] = log_ratios[row].min(0.0).exp() * advantages[row];
+        errors[row]
+    });
 }
 
 /// Appends  ln π(a)/μ(a)  of each row, π a Gaussian about `means` with σ times the row's width.
@@ -84,6 +68,7 @@ pub fn log_ratios(
 mod tests {
     use super::*;
     use crate::gae;
+    use vocabulary::{Cause, RUNNING};
 
     /// One robot, three steps, γ = λ = ½, rewards 1, values 2 4 6, last value 8: δ = 1, 0, −1.
     fn estimate(log_ratios: &[f32; 3], ends: &[f32; 3]) -> ([f32; 3], [f32; 3]) {

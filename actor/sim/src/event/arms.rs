@@ -1,39 +1,16 @@
 //! Arms that somebody else holds for a while: carrying, gesturing, shaken by the hand. Whatever the policy wants of them,
 //! their motors hold another pose.
 
+use super::spell::Spell;
 use crate::command;
 use crate::randomization::uniform;
-use crate::time::CONTROL_STEP;
 use g1::joints::LEFT_ARM;
 use g1::{DEFAULT_POSE, JOINT_TABLE, JOINTS};
 use rand::Rng;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Joints of both arms, the last of all.
 const ARMS: usize = JOINTS - LEFT_ARM;
-
-/// The row of held arms.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Hold {
-    /// How far off the default pose: an angle is drawn, and each joint is held by up to as much to either side of it.
-    pub range: [f32; 2],
-    /// How long they are held, s: least and greatest. Default 0.5 to 3.
-    #[serde(default = "duration")]
-    pub duration: [f32; 2],
-    /// Time from the end of one hold to the next, s: least and greatest. Default 2 to 6.
-    #[serde(default = "seconds")]
-    pub seconds: [f32; 2],
-}
-
-fn duration() -> [f32; 2] {
-    [0.5, 3.0]
-}
-
-fn seconds() -> [f32; 2] {
-    [2.0, 6.0]
-}
 
 /// A robot whose arms are held now and then.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -46,7 +23,7 @@ pub(crate) struct Held {
 
 impl Held {
     /// At the start of an episode.
-    pub(crate) fn new(row: Option<&Hold>, rng: &mut impl Rng) -> Self {
+    pub(crate) fn new(row: Option<&Spell>, rng: &mut impl Rng) -> Self {
         let steps = row.map_or(0, |row| command::steps(row.seconds, rng));
         Self { steps, pose: None }
     }
@@ -54,7 +31,7 @@ impl Held {
     /// Puts the arms' targets of the coming control step where they are held, if they are.
     pub(crate) fn step(
         &mut self,
-        row: Option<&Hold>,
+        row: Option<&Spell>,
         targets: &mut [f32; JOINTS],
         rng: &mut impl Rng,
     ) {
@@ -75,8 +52,9 @@ impl Held {
     }
 }
 
-/// A pose of both arms that their joints can take.
-fn pose(row: &Hold, rng: &mut impl Rng) -> [f32; ARMS] {
+/// A pose of both arms that their joints can take: an angle is drawn, and each joint is held by up to as much to either side of
+/// the default pose.
+fn pose(row: &Spell, rng: &mut impl Rng) -> [f32; ARMS] {
     let angle = uniform(row.range, rng);
     std::array::from_fn(|i| {
         let joint = LEFT_ARM + i;
@@ -86,9 +64,6 @@ fn pose(row: &Hold, rng: &mut impl Rng) -> [f32; ARMS] {
     })
 }
 
-/// Least and greatest duration of a hold and of what is between two, s.
-pub(crate) const TIMES: [f32; 2] = [CONTROL_STEP, 3_600.0];
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -97,7 +72,7 @@ mod tests {
 
     #[test]
     fn arms_are_held_and_let_go_in_time_and_legs_are_not_touched() {
-        let row = Hold {
+        let row = Spell {
             range: [0.5, 0.5],
             duration: [0.1, 0.1],
             seconds: [0.2, 0.2],

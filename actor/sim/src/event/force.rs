@@ -1,36 +1,14 @@
 //! Pushes that last: a force on the torso for a while, now and then.
 //!
-//! Separate because it is the one row that comes at its own times.
+//! Separate because it acts on the body, for a time that need not be whole steps.
 
+use super::spell::Spell;
 use crate::command;
 use crate::randomization::uniform;
 use crate::time::CONTROL_STEP;
 use rand::Rng;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f32::consts::TAU;
-
-/// The row of forces.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Force {
-    /// Least and greatest size; every one between them is as likely.
-    pub range: [f32; 2],
-    /// How long it acts, s: least and greatest. Default 0.05 to 0.2.
-    #[serde(default = "duration")]
-    pub duration: [f32; 2],
-    /// Time from the end of one to the next, s: least and greatest. Default 5 to 10.
-    #[serde(default = "seconds")]
-    pub seconds: [f32; 2],
-}
-
-fn duration() -> [f32; 2] {
-    [0.05, 0.2]
-}
-
-fn seconds() -> [f32; 2] {
-    [5.0, 10.0]
-}
 
 /// A robot that is pushed now and then.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -45,7 +23,7 @@ pub(crate) struct Pressed {
 
 impl Pressed {
     /// At the start of an episode.
-    pub(crate) fn new(row: Option<&Force>, rng: &mut impl Rng) -> Self {
+    pub(crate) fn new(row: Option<&Spell>, rng: &mut impl Rng) -> Self {
         Self {
             wait: row.map(|row| command::steps(row.seconds, rng)),
             ..Self::default()
@@ -54,7 +32,7 @@ impl Pressed {
 
     /// The force of the coming control step, and whether a push begins with it. A push that ends within a step is as much
     /// weaker in it as it is shorter: its momentum F·t is exact.
-    pub(crate) fn step(&mut self, row: Option<&Force>, rng: &mut impl Rng) -> ([f32; 3], bool) {
+    pub(crate) fn step(&mut self, row: Option<&Spell>, rng: &mut impl Rng) -> ([f32; 3], bool) {
         let Some(row) = row else {
             *self = Self::default();
             return ([0.0; 3], false);
@@ -92,7 +70,7 @@ mod tests {
 
     #[test]
     fn a_push_has_its_momentum_and_the_next_comes_in_time() {
-        let row = Force {
+        let row = Spell {
             range: [100.0, 100.0],
             duration: [0.05, 0.05],
             seconds: [1.0, 1.0],

@@ -7,7 +7,7 @@ use g1::state::STANDING_HEIGHT;
 use observation::Table;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use sim::event::Force;
+use sim::event::Spell;
 use sim::randomization::Row;
 use sim::{EventConfig, GroundConfig};
 
@@ -74,7 +74,7 @@ impl Acting {
     }
 
     pub(super) fn push(&mut self, newtons: f32) {
-        self.event.force = Some(Force {
+        self.event.force = Some(Spell {
             range: [newtons, newtons],
             duration: [0.05, 0.05],
             seconds: [3.0, 5.0],
