@@ -81,8 +81,6 @@ pub struct Ppo {
     own_critic: bool,
     /// ln σ is within these; none if σ is not learned.
     log_sigma_limits: Option<Range<f32>>,
-    /// How many times as fast as the networks ln σ goes.
-    log_sigma_rate: f32,
     /// Actor, critic, ln σ.
     weights: Vec<f32>,
     adam: Adam,
@@ -119,7 +117,6 @@ impl Ppo {
             adam: Adam::new(weights.len(), AdamConfig::default(), vec![]),
             rate: config.ppo.learning_rate,
             config: config.ppo.clone(),
-            log_sigma_rate: config.exploration.rate,
             log_sigma_limits: (config.exploration.kind == ExplorationKind::Learned)
                 .then_some(limits),
             order: Order::default(),

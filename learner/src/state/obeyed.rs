@@ -39,11 +39,6 @@ const CASES: &[(&str, &str, &str)] = &[
     ("exploration.sigma.samples", "", "[500.0, 1000.0]"),
     ("exploration.waist_factor", "", "0.5"),
     ("exploration.arm_factor", "", "0.5"),
-    (
-        "exploration.rate",
-        "exploration={kind='learned',sigma=0.6}",
-        "5.0",
-    ),
     ("ppo.gamma", "", "0.5"),
     ("ppo.lambda", "", "0.5"),
     ("ppo.reward_scale", "", "0.5"),

@@ -80,7 +80,6 @@ const TABLE: &[(&str, Rule, &[&str])] = &[
         WIDTH,
         &["sigma", "waist_factor", "arm_factor"],
     ),
-    ("exploration", Free, &["rate"]),
     ("ppo", Free, &["gamma", "lambda", "reward_scale", "clip"]),
     ("ppo", Free, &["epochs", "minibatch"]),
     ("ppo", Free, &["learning_rate", "schedule", "kl_target"]),

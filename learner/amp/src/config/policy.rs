@@ -30,9 +30,6 @@ pub struct ExplorationConfig {
     pub waist_factor: f32,
     /// Arms' σ in parts of the legs'. The recipe's.
     pub arm_factor: f32,
-    /// How many times as fast as the networks a learned ln σ goes. With 1 (default) an iteration changes it by 0.0002: by the
-    /// time that robots walk it is long too wide, and the policy learns to wait for noise.
-    pub rate: f32,
 }
 
 /// Choices of [`ExplorationConfig::kind`].
@@ -69,7 +66,6 @@ impl Default for ExplorationConfig {
             sigma: Ramp::moving(0.6, 0.2, [1.0e6, 3.0e6]),
             waist_factor: 0.3,
             arm_factor: 0.3,
-            rate: 1.0,
         }
     }
 }
@@ -94,7 +90,6 @@ impl Section for ExplorationConfig {
             .ramp("sigma", &self.sigma, Check::at_least_a_millionth)
             .at_least_a_millionth("waist_factor", self.waist_factor)
             .at_least_a_millionth("arm_factor", self.arm_factor)
-            .positive("rate", self.rate)
             .0
     }
 }

@@ -31,14 +31,12 @@ impl Ppo {
             let kl = total.kl / total.kl_rows.max(1) as f64;
             self.follow(kl, minibatch.rows.kl_target);
         }
-        let before = self.log_sigma().to_vec();
         self.adam
             .step(&mut self.weights, &total.gradient, self.rate);
         if let Some(limits) = &self.log_sigma_limits {
             let start = self.actor.len() + self.critic.len();
-            for (log, before) in self.weights[start..].iter_mut().zip(before) {
-                let after = before + self.log_sigma_rate * (*log - before);
-                *log = after.clamp(limits.start, limits.end);
+            for log in &mut self.weights[start..] {
+                *log = log.clamp(limits.start, limits.end);
             }
         }
         Ok((total, norm))

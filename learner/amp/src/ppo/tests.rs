@@ -255,32 +255,6 @@ fn learned_exploration_shrinks_when_it_does_not_pay() {
 }
 
 #[test]
-fn exploration_learns_as_many_times_as_fast_as_is_said() {
-    let change = |rate: f32| {
-        let mut config = config();
-        config.exploration.kind = ExplorationKind::Learned;
-        config.exploration.sigma = 0.5.into();
-        config.exploration.rate = rate;
-        config.ppo.minibatch = 1000;
-        config.ppo.epochs = 1;
-        let mut ppo = ppo(&config);
-        let mut rng = Pcg64::seed_from_u64(6);
-        let bandit = Bandit::play(&ppo, 0.5, &mut rng, |action| -action[0].abs());
-        let before = ppo.weights.clone();
-        ppo.update(&bandit.rows(), &[0.5; ACTION], &mut rng)
-            .expect("finite");
-        let start = ppo.actor.len() + ppo.critic.len();
-        let sigma = ppo.weights[start] - before[start];
-        (sigma, ppo.weights[..start].to_vec())
-    };
-    let ((once, networks), (thrice, others)) = (change(1.0), change(3.0));
-    // Adam's first step is as long as the rate, 0.01.
-    assert!((once + 0.01).abs() < 1e-4, "{once}");
-    assert!((thrice + 0.03).abs() < 3e-4, "{thrice}");
-    assert_eq!(networks, others);
-}
-
-#[test]
 fn what_becomes_infinite_is_named() {
     let mut ppo = ppo(&config());
     let mut rng = Pcg64::seed_from_u64(7);
