@@ -149,7 +149,7 @@ impl LearnerBench {
         let policy = noise(batch * judge.width(), &mut rng);
         self.median_ms(|| {
             judge
-                .update(&experts, &policy)
+                .update(&experts, &policy, &[])
                 .map_err(|fault| anyhow::anyhow!("{} became {}", fault.what, fault.value))?;
             Ok(())
         })

@@ -15,8 +15,10 @@ use networks::{
 use rand::Rng;
 use std::ops::{AddAssign, Range};
 
+mod mismatch;
 mod view;
 
+pub(crate) use mismatch::mismatch;
 pub use view::View;
 
 /// Figures of one update, means over its steps.
@@ -26,6 +28,8 @@ pub struct Figures {
     pub expert_score: f64,
     /// Mean D of the policy.
     pub policy_score: f64,
+    /// Mean D of reference motion beside commands that it does not follow; none if it is not shown.
+    pub mismatch_score: Option<f64>,
     /// L_GP (Eq. 5).
     pub gradient_penalty: f64,
     /// L_AMP (Eq. 6).
@@ -53,6 +57,7 @@ struct Sums {
     gradient: Vec<f32>,
     expert_score: f64,
     policy_score: f64,
+    mismatch_score: f64,
     penalty: f64,
     loss: f64,
 }
@@ -62,6 +67,7 @@ impl AddAssign for Sums {
         shards::add(&mut self.gradient, &part.gradient);
         self.expert_score += part.expert_score;
         self.policy_score += part.policy_score;
+        self.mismatch_score += part.mismatch_score;
         self.penalty += part.penalty;
         self.loss += part.loss;
     }
@@ -147,18 +153,29 @@ impl Discriminator {
         self.normalizer.update(&alone);
     }
 
-    /// Trains on as many steps as `experts` and `policy` have batches; both normalised, `[row][width]`.
+    /// Trains on as many steps as `experts` and `policy` have batches; both normalised, `[row][width]`. So is what is wrong
+    /// besides, `mismatched`: as many rows, or none.
     ///
     /// # Errors
     /// If a loss, a gradient or a weight is not finite. The weights are then spoilt: the caller holds the good ones.
-    pub fn update(&mut self, experts: &[f32], policy: &[f32]) -> Result<Figures, Fault> {
+    pub fn update(
+        &mut self,
+        experts: &[f32],
+        policy: &[f32],
+        mismatched: &[f32],
+    ) -> Result<Figures, Fault> {
         let batch = self.config.batch * self.width();
         let mut figures = Figures::default();
         let steps = experts.len() / batch;
-        for (experts, policy) in experts.chunks_exact(batch).zip(policy.chunks_exact(batch)) {
-            let step = self.step(experts, policy)?;
+        let rows = experts.chunks_exact(batch).zip(policy.chunks_exact(batch));
+        for (index, (experts, policy)) in rows.enumerate() {
+            let mismatched = mismatched.chunks_exact(batch).nth(index);
+            let step = self.step(experts, policy, mismatched.unwrap_or(&[]))?;
             figures.expert_score += step.expert_score / steps as f64;
             figures.policy_score += step.policy_score / steps as f64;
+            if let Some(score) = step.mismatch_score {
+                *figures.mismatch_score.get_or_insert(0.0) += score / steps as f64;
+            }
             figures.gradient_penalty += step.gradient_penalty / steps as f64;
             figures.loss += step.loss / steps as f64;
         }
@@ -167,11 +184,16 @@ impl Discriminator {
     }
 
     /// One step of the optimizer on as many experts as policy transitions.
-    fn step(&mut self, experts: &[f32], policy: &[f32]) -> Result<Figures, Fault> {
+    fn step(
+        &mut self,
+        experts: &[f32],
+        policy: &[f32],
+        mismatched: &[f32],
+    ) -> Result<Figures, Fault> {
         let count = experts.len() / self.width();
         let threads = self.threads.min(count);
         let total = shards::total(count, threads, |part| {
-            self.differentiate(experts, policy, part)
+            self.differentiate(experts, policy, mismatched, part)
         });
         self.check(&total)?;
         self.adam.step(
@@ -182,6 +204,7 @@ impl Discriminator {
         Ok(Figures {
             expert_score: total.expert_score / count as f64,
             policy_score: total.policy_score / count as f64,
+            mismatch_score: (!mismatched.is_empty()).then(|| total.mismatch_score / count as f64),
             gradient_penalty: total.penalty,
             loss: total.loss,
         })
@@ -202,7 +225,13 @@ impl Discriminator {
     }
 
     /// Gradient and figures of a part of a step's rows.
-    fn differentiate(&self, experts: &[f32], policy: &[f32], part: Range<usize>) -> Sums {
+    fn differentiate(
+        &self,
+        experts: &[f32],
+        policy: &[f32],
+        mismatched: &[f32],
+        part: Range<usize>,
+    ) -> Sums {
         let device = tracked_device();
         let network = Mlp::new(&self.shape, &self.weights, &device).expect("weights of this shape");
         let count = experts.len() / self.width();
@@ -228,16 +257,20 @@ impl Discriminator {
             let gradient = network.input_gradient(&expert.hidden);
             let along_states = gradient.narrow(1, 0, self.config.frames * self.features);
             let penalty = losses::gradient_penalty(along_states, count);
-            let (of_experts, of_policy) = match self.config.loss {
-                LossKind::LeastSquares => (
-                    losses::expert_loss(expert.output.clone(), count),
-                    losses::policy_loss(policy_scores.clone(), count),
-                ),
-                LossKind::Logistic => (
-                    losses::expert_logistic(expert.output.clone(), count),
-                    losses::policy_logistic(policy_scores.clone(), count),
-                ),
+            let wrong = |scores, count| match self.config.loss {
+                LossKind::LeastSquares => losses::policy_loss(scores, count),
+                LossKind::Logistic => losses::policy_logistic(scores, count),
             };
+            let of_experts = match self.config.loss {
+                LossKind::LeastSquares => losses::expert_loss(expert.output.clone(), count),
+                LossKind::Logistic => losses::expert_logistic(expert.output.clone(), count),
+            };
+            let mut of_policy = wrong(policy_scores.clone(), count);
+            if !mismatched.is_empty() {
+                let scores = network.forward(rows(mismatched));
+                of_policy = of_policy + wrong(scores.clone(), count) * self.config.mismatched;
+                sums.mismatch_score += total(values(scores));
+            }
             // The slope of a score where nothing is known is half that of its logit.
             let penalty = if logistic { penalty * 0.25 } else { penalty };
             let loss = losses::amp_loss(

@@ -169,7 +169,7 @@ impl Learning {
         view.apply(experts, &mut seen);
         view.apply(others, &mut seen_others);
         discriminator
-            .update(&seen, &seen_others)
+            .update(&seen, &seen_others, &[])
             .map_err(|Fault { what, value }| LearningError::NotFinite {
                 what,
                 value,
@@ -269,6 +269,7 @@ impl Learning {
             explained_variance,
             expert_score: discriminator.expert_score,
             policy_score: discriminator.policy_score,
+            mismatch_score: discriminator.mismatch_score,
             gradient_penalty: discriminator.gradient_penalty,
             discriminator_loss: discriminator.loss,
             seconds: Seconds {

@@ -70,6 +70,9 @@ pub struct IterationReport {
     pub expert_score: f64,
     /// Mean D of policy transitions.
     pub policy_score: f64,
+    /// Mean D of reference motion beside commands that it does not follow; none if it is not shown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mismatch_score: Option<f64>,
     /// Mean L_GP (Eq. 5), without its weight.
     pub gradient_penalty: f64,
     /// Mean L_AMP (Eq. 6).

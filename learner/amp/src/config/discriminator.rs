@@ -22,6 +22,11 @@ pub struct DiscriminatorConfig {
     /// is the easiest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub command_blur: Option<[f32; COMMAND]>,
+    /// Weight, beside the policy's windows, of reference motion with a command that it does not follow, which is to be told
+    /// apart as the policy's is. Default 0: none is shown, as in the paper. It then learns what disobeying looks like from the
+    /// policy alone. Needs `command_blur`.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub mismatched: f32,
     /// What it is trained on: `least_squares`, the paper's Eq. 3 and 4, or `logistic`.
     pub loss: LossKind,
     /// Widths of hidden layers (ReLU). The recipe's; published trainers use 1024-512.
@@ -79,6 +84,7 @@ impl Default for DiscriminatorConfig {
             frames: 2,
             spacing: 1,
             command_blur: None,
+            mismatched: 0.0,
             loss: LossKind::LeastSquares,
             hidden: vec![256, 128],
             steps: 3,
@@ -89,6 +95,11 @@ impl Default for DiscriminatorConfig {
             replay_insert: 1024,
         }
     }
+}
+
+/// Whether an option is off.
+fn is_zero(value: &f32) -> bool {
+    *value == 0.0
 }
 
 impl Section for DiscriminatorConfig {
@@ -115,6 +126,13 @@ impl Section for DiscriminatorConfig {
                 "command_blur",
                 self.command_blur.unwrap_or_default(),
                 "use three numbers above 0: m/s forward, m/s aside, rad/s",
+            )
+            .not_negative("mismatched", self.mismatched)
+            .that(
+                self.mismatched == 0.0 || self.command_blur.is_some(),
+                "mismatched",
+                self.mismatched,
+                "set discriminator.command_blur: without it no command is seen",
             )
             .count("steps", self.steps, 1000)
             .count("batch", self.batch, 1 << 20)

@@ -44,7 +44,7 @@ fn two_gaussians_are_told_apart() {
     for _ in 0..40 {
         let experts = gaussian(512, 0.3, &mut rng);
         let policy = gaussian(512, -0.3, &mut rng);
-        figures = judge.update(&experts, &policy).expect("finite");
+        figures = judge.update(&experts, &policy, &[]).expect("finite");
     }
     let (expert, policy) = (
         mean_score(&judge, &gaussian(200, 0.3, &mut rng)),
@@ -68,7 +68,7 @@ fn the_logistic_loss_tells_them_apart_too_and_scores_stay_within_one() {
     for _ in 0..40 {
         let experts = gaussian(512, 0.3, &mut rng);
         let policy = gaussian(512, -0.3, &mut rng);
-        figures = judge.update(&experts, &policy).expect("finite");
+        figures = judge.update(&experts, &policy, &[]).expect("finite");
     }
     assert!(figures.expert_score > 0.6 && figures.policy_score < -0.6);
     let mut scores = Vec::new();
@@ -89,7 +89,7 @@ fn a_heavy_penalty_flattens_the_judge() {
         for _ in 0..30 {
             let (experts, policy) = (gaussian(512, 0.3, &mut rng), gaussian(512, -0.3, &mut rng));
             last = judge
-                .update(&experts, &policy)
+                .update(&experts, &policy, &[])
                 .expect("finite")
                 .gradient_penalty;
         }
@@ -105,8 +105,8 @@ fn parts_of_a_step_add_up() {
     let judge = discriminator(&small(), 1);
     let mut rng = Pcg64::seed_from_u64(4);
     let (experts, policy) = (gaussian(20, 0.3, &mut rng), gaussian(20, -0.3, &mut rng));
-    let whole = judge.differentiate(&experts, &policy, 0..20);
-    let halves = [0..10, 10..20].map(|part| judge.differentiate(&experts, &policy, part));
+    let whole = judge.differentiate(&experts, &policy, &[], 0..20);
+    let halves = [0..10, 10..20].map(|part| judge.differentiate(&experts, &policy, &[], part));
     assert!((whole.loss - halves[0].loss - halves[1].loss).abs() < 1e-5);
     for i in 0..whole.gradient.len() {
         let sum = halves[0].gradient[i] + halves[1].gradient[i];
@@ -169,11 +169,28 @@ fn motion_that_is_not_what_was_asked_for_is_told_apart() {
         let mut judge = judge.clone();
         judge.config.gradient_penalty = penalty;
         for _ in 0..60 {
-            judge.update(&obedient, &other).expect("finite");
+            judge.update(&obedient, &other, &[]).expect("finite");
         }
         let (expert, policy) = (mean_score(&judge, &obedient), mean_score(&judge, &other));
         assert!(expert > policy + apart, "{penalty}: {expert} {policy}");
     }
+}
+
+#[test]
+fn what_is_wrong_besides_is_told_apart_and_the_policy_s_score_stays() {
+    // The policy moves as experts do: where the third kind is, and only there, scores fall.
+    let mut judge = discriminator(&small(), 2);
+    let mut rng = Pcg64::seed_from_u64(9);
+    judge.config.mismatched = 1.0;
+    let mut figures = Figures::default();
+    for _ in 0..40 {
+        let [experts, policy] = [(); 2].map(|()| gaussian(512, 0.3, &mut rng));
+        let wrong = gaussian(512, -0.3, &mut rng);
+        figures = judge.update(&experts, &policy, &wrong).expect("finite");
+    }
+    // (p − q)/(p + q) = 0 for the policy, as without the third kind.
+    assert!(figures.policy_score.abs() < 0.1, "{figures:?}");
+    assert!(figures.mismatch_score < Some(-0.6), "{figures:?}");
 }
 
 #[test]
@@ -182,7 +199,7 @@ fn what_becomes_infinite_is_named() {
     let mut rng = Pcg64::seed_from_u64(6);
     let (mut experts, policy) = (gaussian(128, 0.3, &mut rng), gaussian(128, -0.3, &mut rng));
     experts[7] = f32::NAN;
-    let fault = judge.update(&experts, &policy).expect_err("NaN");
+    let fault = judge.update(&experts, &policy, &[]).expect_err("NaN");
     assert_eq!(fault.what, "discriminator loss");
     assert_eq!(judge.name(0), "discriminator.layers.0.weight");
 }

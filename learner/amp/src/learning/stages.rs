@@ -47,6 +47,9 @@ pub(super) struct Scratch {
     /// What is normalised for a moment.
     pub(super) scaled: Vec<f32>,
     pub(super) scaled_policy: Vec<f32>,
+    /// Reference motion beside commands that it does not follow, and the same normalised.
+    pub(super) mismatched: Vec<f32>,
+    pub(super) scaled_mismatched: Vec<f32>,
 }
 
 /// Observations of one kind over the rows of an iteration.
@@ -284,6 +287,8 @@ impl Learning {
             policy,
             scaled,
             scaled_policy,
+            mismatched,
+            scaled_mismatched,
             ..
         } = &mut self.scratch;
         let core = &mut self.core;
@@ -318,7 +323,14 @@ impl Learning {
         view.apply(expert, scaled);
         scaled_policy.clear();
         view.apply(policy, scaled_policy);
-        core.discriminator.update(scaled, scaled_policy)
+        scaled_mismatched.clear();
+        if let (true, Some(blur)) = (config.mismatched > 0.0, config.command_blur) {
+            mismatched.clear();
+            discrimination::mismatch(expert, policy, width, blur, mismatched);
+            view.apply(mismatched, scaled_mismatched);
+        }
+        core.discriminator
+            .update(scaled, scaled_policy, scaled_mismatched)
     }
 
     /// What the next iteration is to know of this batch. Nothing fails from here on.
