@@ -36,7 +36,7 @@ pub struct RewardReport {
     pub style_mean: f64,
     /// σˢ, standard deviation of the style reward.
     pub style_std: f64,
-    /// Standard deviation over the robots of each one's mean style reward; NaN where it is not known.
+    /// Standard deviation of the robots' mean style rewards about what their commands make of them; NaN where it is not known.
     #[serde(default = "number::unknown", deserialize_with = "number::or_nan")]
     pub style_std_robots: f64,
     /// Smallest style reward.

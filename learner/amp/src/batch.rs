@@ -3,8 +3,8 @@
 //! Rows are ordered rollout by rollout, within a rollout `[step][environment]`. The arrays are filled in place and
 //! reused, so that an iteration allocates nothing here.
 
-use crate::LearningError;
 use crate::columns::{Place, Widths};
+use crate::{COMMAND, LearningError};
 use vocabulary::{CALM, Cause, calm};
 
 /// One rollout's size.
@@ -245,6 +245,20 @@ impl Batch {
             })
         };
         (0..self.segments.len()).flat_map(rollout).collect()
+    }
+
+    /// Each robot's mean command over its steps of a rollout (m/s, m/s, rad/s), in the order of [`Self::means_of_robots`].
+    pub(crate) fn commands_of_robots(&self, place: &Place) -> Vec<[f32; COMMAND]> {
+        let part = |part: usize| {
+            let numbers: Vec<f32> = (0..self.rows())
+                .map(|row| self.at(row, place)[part])
+                .collect();
+            self.means_of_robots(&numbers)
+        };
+        let parts: [Vec<f32>; COMMAND] = std::array::from_fn(part);
+        (0..self.robots())
+            .map(|robot| std::array::from_fn(|part| parts[part][robot]))
+            .collect()
     }
 
     /// Where rollout `index` lies among rows and among environments.

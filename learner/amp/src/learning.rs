@@ -11,7 +11,7 @@ use crate::replay::Replay;
 use crate::report::{IterationReport, Seconds, moments};
 use crate::robot::Robot;
 use crate::style::style_reward;
-use crate::{LearningError, blend, exploration};
+use crate::{LearningError, blend, exploration, spread};
 use ampco::{Granularity, Rule};
 use networks::{Normalizer, snapshot};
 use rand::SeedableRng;
@@ -246,7 +246,10 @@ impl Learning {
             rows: batch.rows() as u64,
             style_mean: style[0],
             style_std: style[1],
-            style_std_robots: moments(&batch.means_of_robots(&self.scratch.style_rewards))[1],
+            style_std_robots: spread::deviation_at_a_command(
+                &batch.means_of_robots(&self.scratch.style_rewards),
+                &batch.commands_of_robots(&self.robot.command),
+            ),
             style_min: style[2],
             style_max: style[3],
             task_mean: task[0],

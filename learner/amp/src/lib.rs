@@ -45,6 +45,7 @@ mod report;
 pub mod robot;
 pub mod saturation;
 mod saved;
+mod spread;
 pub mod style;
 pub mod surrogate;
 pub mod vtrace;

@@ -20,7 +20,7 @@ pub struct IterationReport {
     pub style_mean: f64,
     /// Its standard deviation over the batch's transitions.
     pub style_std: f64,
-    /// Standard deviation over the robots of each one's mean in the batch.
+    /// Standard deviation of the robots' means in the batch, each beside that of the robot with the nearest command.
     pub style_std_robots: f64,
     /// Its least value.
     pub style_min: f64,

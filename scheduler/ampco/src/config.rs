@@ -86,7 +86,8 @@ pub enum BoundsSource {
     Batch,
     /// The W mean rewards in the window.
     Window,
-    /// The robots of that batch, each with its mean reward: how far gaits differ, not how far the steps of one gait do.
+    /// The robots of that batch, each with its mean reward beside that of the robot with the nearest command: how far gaits
+    /// differ, not how far the steps of one gait do or the commands.
     Robots,
 }
 

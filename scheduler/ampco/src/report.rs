@@ -15,7 +15,7 @@ pub struct Report {
     /// σˢ, standard deviation of the style reward over the same transitions.
     #[serde(default = "number::unknown", deserialize_with = "number::or_nan")]
     pub style_std: f64,
-    /// Standard deviation over the robots of each one's mean style reward; none if that is not known.
+    /// Standard deviation of the robots' mean style rewards about what their commands make of them; none if that is not known.
     pub style_std_robots: Option<f64>,
     /// Mean task reward over the same transitions.
     #[serde(default = "number::unknown", deserialize_with = "number::or_nan")]

@@ -79,6 +79,14 @@ fn a_robot_s_mean_is_over_its_own_rows() {
     // Rows go robot by robot within a step: the first robot has 0.25 and 0.75, the second 0.5 and 1.
     let means = batch.means_of_robots(&[0.25, 0.5, 0.75, 1.0, 0.125]);
     assert_eq!(means, [0.5, 0.75, 0.125]);
+    // Rows measure 0 1 2, 3 4 5 and so on.
+    batch.widths.measured = 3;
+    batch.measured = (0..15).map(|number| number as f32).collect();
+    let commands = batch.commands_of_robots(&Place::Measured(0..3));
+    assert_eq!(
+        commands,
+        [[3.0, 4.0, 5.0], [6.0, 7.0, 8.0], [12.0, 13.0, 14.0]]
+    );
 }
 
 #[test]
