@@ -5,9 +5,16 @@
 //! the row: the rule is checked on the numbers themselves, so that a list of terms of which it is not true costs bytes
 //! and never a bit. It is arithmetic on slices and knows no wire.
 
+mod marks;
+mod rows;
+
 use std::ops::Range;
 
 use protocol::{RolloutLayout, RolloutView, RolloutViewMut};
+
+use marks::marked;
+pub(crate) use rows::{put, take};
+use rows::{rows, rows_mut};
 
 /// Takes from rollouts of a layout what they hold twice, and puts it back.
 #[derive(Clone, Debug)]
@@ -202,137 +209,6 @@ impl Lean {
         self.act_again(last_observations, actions, previous, done);
         Ok(())
     }
-
-    /// Bytes of the marks of one kind: a bit per environment and step.
-    fn marks(&self) -> usize {
-        (self.layout.environments * self.layout.steps).div_ceil(8)
-    }
-
-    /// How long a lean rollout with these marks is.
-    fn expected(&self, bytes: &[u8]) -> Result<usize, LeanError> {
-        let marks = self.marks();
-        let Some((next, rest)) = bytes.split_at_checked(marks) else {
-            let (expected, got) = (2 * marks, bytes.len());
-            return Err(LeanError::Length { expected, got });
-        };
-        let Some((previous, _)) = rest.split_at_checked(marks) else {
-            let (expected, got) = (2 * marks, bytes.len());
-            return Err(LeanError::Length { expected, got });
-        };
-        let environments = self.layout.environments;
-        let (told, rows) = (
-            (self.layout.steps - 1) * environments,
-            self.layout.steps * environments,
-        );
-        // Nothing follows the last step, and there are no rows behind the last.
-        if let Some(row) = (told..8 * marks).find(|row| marked(next, *row)) {
-            return Err(LeanError::Row(row));
-        }
-        let behind = if self.previous.is_empty() { 0 } else { rows };
-        if let Some(row) = (behind..8 * marks).find(|row| marked(previous, *row)) {
-            return Err(LeanError::Row(row));
-        }
-        let count = |marks: &[u8]| -> usize { marks.iter().map(|b| b.count_ones() as usize).sum() };
-        let left_out =
-            count(next) * self.layout.lists.widths.features + count(previous) * self.previous.len();
-        Ok(2 * marks + 4 * (self.layout.len() - left_out))
-    }
-
-    /// The rows that need not be sent: of next features, and of previous actions.
-    fn marks_of(&self, view: &RolloutView<'_>) -> (Vec<u8>, Vec<u8>) {
-        let mut next = vec![0; self.marks()];
-        let mut previous = next.clone();
-        let environments = self.layout.environments;
-        let width = self.layout.lists.widths.features;
-        let after = &view.features[environments * width..];
-        for ((row, told), (_, after)) in rows(view.next_features, width).zip(rows(after, width)) {
-            if same(told, after) {
-                next[row / 8] |= 1 << (row % 8);
-            }
-        }
-        if self.previous.is_empty() {
-            return (next, previous);
-        }
-        let width = self.layout.lists.widths.observation;
-        let seen = view.observations[environments * width..]
-            .chunks_exact(width)
-            .chain(view.last_observations.chunks_exact(width));
-        let acted = view.actions.chunks_exact(self.previous.len());
-        for (row, (seen, acted)) in seen.zip(acted).enumerate() {
-            if same(&seen[self.previous.clone()], acted) {
-                previous[row / 8] |= 1 << (row % 8);
-            }
-        }
-        (next, previous)
-    }
-
-    /// Observations, without the action before them where that is marked; the first is of row `from` of the marks.
-    fn put_seen(&self, bytes: &mut Vec<u8>, block: &[f32], marks: &[u8], from: usize) {
-        for (row, numbers) in rows(block, self.layout.lists.widths.observation) {
-            if marked(marks, from + row) {
-                put(bytes, &numbers[..self.previous.start]);
-                put(bytes, &numbers[self.previous.end..]);
-            } else {
-                put(bytes, numbers);
-            }
-        }
-    }
-
-    fn take_seen(&self, rest: &mut &[u8], block: &mut [f32], marks: &[u8], from: usize) {
-        for (row, numbers) in rows_mut(block, self.layout.lists.widths.observation) {
-            if marked(marks, from + row) {
-                take(rest, &mut numbers[..self.previous.start]);
-                take(rest, &mut numbers[self.previous.end..]);
-            } else {
-                take(rest, numbers);
-            }
-        }
-    }
-
-    /// Puts the action before them into marked observations.
-    fn act_again(&self, block: &mut [f32], actions: &[f32], marks: &[u8], from: usize) {
-        for (row, numbers) in rows_mut(block, self.layout.lists.widths.observation) {
-            if marked(marks, from + row) {
-                let acted = &actions[(from + row) * self.previous.len()..][..self.previous.len()];
-                numbers[self.previous.clone()].copy_from_slice(acted);
-            }
-        }
-    }
-}
-
-fn rows(block: &[f32], width: usize) -> impl Iterator<Item = (usize, &[f32])> {
-    block.chunks_exact(width.max(1)).enumerate()
-}
-
-fn rows_mut(block: &mut [f32], width: usize) -> impl Iterator<Item = (usize, &mut [f32])> {
-    block.chunks_exact_mut(width.max(1)).enumerate()
-}
-
-fn marked(marks: &[u8], row: usize) -> bool {
-    marks[row / 8] >> (row % 8) & 1 == 1
-}
-
-fn same(one: &[f32], other: &[f32]) -> bool {
-    let mut pairs = one.iter().zip(other);
-    pairs.all(|(one, other)| one.to_bits() == other.to_bits())
-}
-
-/// Appends numbers, the least significant byte first.
-pub(crate) fn put(bytes: &mut Vec<u8>, numbers: &[f32]) {
-    let from = bytes.len();
-    bytes.resize(from + 4 * numbers.len(), 0);
-    for (place, number) in bytes[from..].chunks_exact_mut(4).zip(numbers) {
-        place.copy_from_slice(&number.to_le_bytes());
-    }
-}
-
-/// Takes numbers from the front; the length was checked.
-pub(crate) fn take(rest: &mut &[u8], numbers: &mut [f32]) {
-    let (front, back) = rest.split_at(4 * numbers.len());
-    for (number, bytes) in numbers.iter_mut().zip(front.chunks_exact(4)) {
-        *number = f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
-    }
-    *rest = back;
 }
 
 #[cfg(test)]
