@@ -189,9 +189,15 @@ impl<D: Desk> Doors<D> {
     }
 }
 
+/// How both ends want lost packets to be taken: not as a sign to slow down by half. Over 20 ms with 1 % loss the kernel's
+/// usual way, cubic, fills a tenth of a line that this one fills.
+const CONGESTION: &str = "bbr";
+
 /// What both ends want of a connection.
 pub(crate) fn settle(stream: &TcpStream) -> io::Result<()> {
     stream.set_nodelay(true)?;
+    // A kernel may not have it, or not let everyone have it (net.ipv4.tcp_allowed_congestion_control): then as usual.
+    let _ = rustix::net::sockopt::set_tcp_congestion(stream, CONGESTION);
     Ok(rustix::net::sockopt::set_tcp_user_timeout(
         stream,
         UNCONFIRMED_MS,

@@ -179,6 +179,7 @@ impl Line {
             .unwrap_or_else(|_| Err(late()))
             .map_err(away)?;
         settle(&stream).map_err(away)?;
+        let congestion = rustix::net::sockopt::tcp_congestion(&stream).unwrap_or_default();
         let name = ServerName::try_from(GATE).expect("a constant name");
         let stream = timeout(GREETING, self.tls.connect(name, stream))
             .await
@@ -224,7 +225,7 @@ impl Line {
             Err(_) => return Err(away(late())),
         };
         let number = self.made.fetch_add(1, Ordering::Relaxed);
-        info!(address = self.address, number, "connected");
+        info!(address = self.address, number, congestion, "connected");
         Ok(Live {
             channel,
             number,
