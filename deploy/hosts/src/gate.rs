@@ -23,7 +23,7 @@ use tracing::{info, warn};
 
 use crate::local::Local;
 use answers::Gate;
-use weights::Broadcast;
+use weights::{Broadcast, Supervised};
 
 /// Between two writings of what is known of the hosts.
 const WRITING: Duration = Duration::from_secs(1);
@@ -38,7 +38,7 @@ const LAST_ROBOTS: Duration = Duration::from_secs(20);
 /// # Errors
 /// A run that cannot be opened, an address that cannot be had.
 pub fn run(run_dir: &Path, listen: &str, here: u32) -> Result<()> {
-    protocol::end_with_supervisor()?;
+    let supervised = Supervised::now(protocol::end_with_supervisor()?);
     let folder = Folder::open(run_dir)?;
     run::log::init(&folder.logs(), "gate")?;
     let mut held = folder.lock("gate")?;
@@ -52,7 +52,7 @@ pub fn run(run_dir: &Path, listen: &str, here: u32) -> Result<()> {
         .enable_all()
         .build()
         .context("starting the loop that follows connections")?;
-    let (broadcast, newest) = Broadcast::follow(&node)?;
+    let (broadcast, newest) = Broadcast::follow(&node, supervised)?;
     runtime.block_on(async {
         let listener = TcpListener::bind(listen)
             .await

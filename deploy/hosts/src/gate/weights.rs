@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use hosts::Newest;
 use protocol::{Node, TICK, WeightsHeader, WeightsOrder, WeightsSubscriber};
 use tokio::sync::watch;
-use tracing::error;
+use tracing::{error, info};
 
 /// Weights, as they are sent.
 #[derive(Debug)]
@@ -32,6 +32,23 @@ impl Held {
 /// The newest weights; none before the learner's first.
 pub(super) type Newer = watch::Receiver<Option<Arc<Held>>>;
 
+/// Whether this process still has the supervisor that started it. When that is killed, the learner ends as it does at
+/// the end of a run, but the run goes on once somebody starts it again: hosts are to wait, not to leave.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Supervised(Option<u32>);
+
+impl Supervised {
+    /// As it is now, for a process that has a supervisor or not.
+    pub(super) fn now(supervised: bool) -> Self {
+        Self(supervised.then(std::os::unix::process::parent_id))
+    }
+
+    fn is_orphaned(self) -> bool {
+        let parent = std::os::unix::process::parent_id;
+        self.0.is_some_and(|supervisor| supervisor != parent())
+    }
+}
+
 /// A thread that follows the learner's weights.
 pub(super) struct Broadcast {
     ending: Arc<AtomicBool>,
@@ -40,7 +57,7 @@ pub(super) struct Broadcast {
 
 impl Broadcast {
     /// Follows them from here on.
-    pub(super) fn follow(node: &Node) -> Result<(Self, Newer)> {
+    pub(super) fn follow(node: &Node, supervised: Supervised) -> Result<(Self, Newer)> {
         let weights = WeightsSubscriber::new(node).context("opening the weights stream")?;
         let (sender, newest) = watch::channel(None);
         let ending = Arc::new(AtomicBool::new(false));
@@ -48,7 +65,7 @@ impl Broadcast {
         let thread = std::thread::Builder::new()
             .name("weights".to_owned())
             .spawn(move || {
-                if let Err(error) = follow(&weights, &sender, &end) {
+                if let Err(error) = follow(&weights, &sender, &end, supervised) {
                     error!(
                         error = format!("{error:#}"),
                         "weights are no longer followed"
@@ -73,10 +90,15 @@ fn follow(
     weights: &WeightsSubscriber,
     sender: &watch::Sender<Option<Arc<Held>>>,
     end: &AtomicBool,
+    supervised: Supervised,
 ) -> Result<()> {
     while !end.load(Ordering::Relaxed) {
         if let Some(newest) = weights.newest()? {
             let header = *newest.header();
+            if header.order() == Some(WeightsOrder::SaveThenStop) && supervised.is_orphaned() {
+                info!("the supervisor was killed: hosts are not told that the run ends");
+                return Ok(());
+            }
             let sent = hosts::sent_weights(&header, hosts::sent_flat(newest.flat()));
             drop(newest);
             sender.send_replace(Some(Arc::new(Held { header, sent })));
