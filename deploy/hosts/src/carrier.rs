@@ -10,13 +10,14 @@ mod poll;
 mod robots;
 
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 use hosts::{Leave, Line, Pass};
 use protocol::{Domain, Node, RolloutSubscriber, Shutdown};
+use run::journal::{Entry, Journal};
 use run::{Checkpoints, Folder};
 use tokio::task::JoinSet;
 use tokio::time::{Instant, sleep, timeout};
@@ -49,6 +50,7 @@ struct Carrier {
     counted: Counted,
     /// The run has ended: nobody will take what the gate does not take now.
     ended: AtomicBool,
+    journal: Mutex<Journal>,
 }
 
 /// Carries for the actors of the host whose folder is `run_dir`, until it is told to stop or the run ends.
@@ -66,7 +68,10 @@ pub fn run(run_dir: &Path) -> Result<()> {
     let node = Node::join(&Domain::for_run(folder.path())?, "carrier", &shutdown)?;
     let lists = local.layout().lists;
     let rollouts = RolloutSubscriber::new(&node, lists).context("opening the rollout stream")?;
-    local.note(&folder, "carrier", &stay.numbers)?;
+    let mut journal = local.journal(&folder, "carrier")?;
+    for number in &stay.numbers {
+        journal.write(|| Entry::Carrying(*number));
+    }
     let pass = Pass::read(&stay.file)?;
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
@@ -78,6 +83,7 @@ pub fn run(run_dir: &Path) -> Result<()> {
         counted: Counted::new(&local),
         robots: Robots::default(),
         ended: AtomicBool::new(false),
+        journal: Mutex::new(journal),
         stay,
         local,
         folder,
@@ -176,6 +182,11 @@ impl Carrier {
             }
             sleep(LOOK).await;
         }
+    }
+
+    fn write_down(&self, entry: impl FnOnce() -> Entry) {
+        let mut journal = self.journal.lock().unwrap_or_else(PoisonError::into_inner);
+        journal.write(entry);
     }
 
     fn show(&self) {

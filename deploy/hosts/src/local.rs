@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use hosts::Lean;
 use observation::{ObservationConfig, Tables};
 use protocol::{Lists, RolloutLayout};
-use run::journal::{Entry, Journal};
+use run::journal::Journal;
 use run::{Config, FleetConfig, Folder, RunConfig};
 
 /// What both ends read.
@@ -44,13 +44,10 @@ impl Local {
         })
     }
 
-    /// Writes down who passes rollouts of these actors on from now on.
-    pub(crate) fn note(&self, folder: &Folder, role: &str, numbers: &[u32]) -> Result<()> {
-        let mut journal = Journal::open(&folder.logs(), role, self.journal)?;
-        for number in numbers {
-            journal.write(|| Entry::Passing(*number));
-        }
-        Ok(())
+    /// The journal of a process of this host, if one is kept.
+    pub(crate) fn journal(&self, folder: &Folder, role: &str) -> Result<Journal> {
+        let opened = Journal::open(&folder.logs(), role, self.journal);
+        opened.context("opening the journal of rollouts")
     }
 
     pub(crate) fn layout(&self) -> RolloutLayout {

@@ -31,8 +31,14 @@ pub enum Entry {
     /// A learner has received a rollout: its number, the iteration it gathers for, what it did with
     /// the rollout, one of [`FATES`].
     Received(u64, u64, Key, String),
-    /// Somebody between an actor of another machine and the learner begins to pass its rollouts on: a gate or a carrier.
+    /// A carrier begins with an actor of its machine: what one before it held is lost.
+    Carrying(u32),
+    /// A carrier's rollout was acknowledged.
+    Carried(Key),
+    /// A gate opens its end of the learner's stream for an actor of another machine: what lay in one before is lost.
     Passing(u32),
+    /// A gate has put a rollout into the learner's stream.
+    Passed(Key),
 }
 
 /// What a send can come to: the learner's stream has it; nobody listened; the stream stayed full; the
@@ -55,7 +61,10 @@ impl Entry {
             Self::Received(learner, iteration, (actor, life, number), fate) => {
                 format!("received {learner} {iteration} {actor} {life} {number} {fate}\n")
             }
+            Self::Carrying(actor) => format!("carrying {actor}\n"),
+            Self::Carried((actor, life, number)) => format!("carried {actor} {life} {number}\n"),
             Self::Passing(actor) => format!("passing {actor}\n"),
+            Self::Passed((actor, life, number)) => format!("passed {actor} {life} {number}\n"),
         }
     }
 
@@ -84,7 +93,10 @@ impl Entry {
                 let (learner, iteration) = (learner.parse().ok()?, iteration.parse().ok()?);
                 Self::Received(learner, iteration, key(rest)?, (*fate).to_owned())
             }
+            ["carrying", actor] => Self::Carrying(actor.parse().ok()?),
+            ["carried", rest @ ..] => Self::Carried(key(rest)?),
             ["passing", actor] => Self::Passing(actor.parse().ok()?),
+            ["passed", rest @ ..] => Self::Passed(key(rest)?),
             _ => return None,
         })
     }
@@ -165,6 +177,10 @@ mod tests {
             Entry::Sent((1, 20, 3), "delivered".to_owned()),
             Entry::Begun(7, 0),
             Entry::Received(7, 1, (1, 20, 3), "used".to_owned()),
+            Entry::Carrying(1),
+            Entry::Carried((1, 20, 3)),
+            Entry::Passing(1),
+            Entry::Passed((1, 20, 3)),
         ];
         let mut journal = Journal::open(logs.path(), "actor-1", true).unwrap();
         for entry in &entries {

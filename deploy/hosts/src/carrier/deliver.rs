@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
 use hosts::{CallError, Delivered};
+use run::journal::{Entry, OUTCOMES};
 use tokio::sync::mpsc::Receiver;
 use tokio::time::sleep;
 use tracing::info;
@@ -28,18 +29,22 @@ impl Carrier {
             if self.robots.are_due(actor, header.policy_version) {
                 self.send_robots(actor, header.policy_version).await?;
             }
+            let key = (actor, header.incarnation, header.sequence);
             let delivery = hosts::sent_rollout(&self.stay.life, &header, rows);
             let began = Instant::now();
             loop {
                 let answer = self.line.call("Deliver", delivery.clone(), DELIVERY).await;
                 match answer {
                     Ok(Delivered { taken: true }) => {
+                        self.write_down(|| Entry::Carried(key));
                         let seconds = began.elapsed().as_secs_f32();
                         self.counted.acknowledged(header.policy_version, seconds);
                         break;
                     }
                     Ok(Delivered { taken: false }) if self.ended.load(Ordering::Relaxed) => {
                         info!(actor, "the run ended before a rollout was taken");
+                        let [_, unheard, ..] = OUTCOMES;
+                        self.write_down(|| Entry::Sent(key, unheard.to_owned()));
                         break;
                     }
                     Ok(Delivered { taken: false }) => {}

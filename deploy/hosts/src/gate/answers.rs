@@ -14,6 +14,7 @@ use hosts::{
 };
 use motion::{Dataset, MotionConfig};
 use protocol::{Node, RolloutHeader, SendOutcome, WeightsOrder};
+use run::journal::{Entry, Journal};
 use run::motion::Print;
 use run::{Config, Folder};
 use tracing::warn;
@@ -40,6 +41,7 @@ pub(super) struct Gate {
     first: u32,
     motion: Vec<MotionFile>,
     newest: Newer,
+    journal: Mutex<Journal>,
     seats: Mutex<Seats>,
     moving: Mutex<Moving>,
 }
@@ -65,6 +67,7 @@ impl Gate {
             });
         }
         Ok(Self {
+            journal: Mutex::new(local.journal(&folder, "gate")?),
             config: config.to_toml(),
             folder,
             local,
@@ -111,7 +114,11 @@ impl Gate {
             restored.map_err(|error| refused(error.to_string()))?;
             let sent = publisher.forward(loan, header);
             match sent.map_err(|error| refused(error.to_string()))? {
-                SendOutcome::Delivered => return Ok(true),
+                SendOutcome::Delivered => {
+                    let key = (header.actor, header.incarnation, header.sequence);
+                    lock(&self.journal).write(|| Entry::Passed(key));
+                    return Ok(true);
+                }
                 // Nobody listens: the learner is not there yet, or no longer, and comes again unless the run has ended.
                 SendOutcome::Lost
                     if since.elapsed() < WAITING
@@ -134,14 +141,9 @@ impl Gate {
             layout: self.local.layout(),
             patience: self.local.patience,
             first: self.first,
+            journal: &self.journal,
         };
         let numbers = lock(&self.seats).join(&from.to_string(), join, &house)?;
-        if let Err(error) = self.local.note(&self.folder, "gate", &numbers) {
-            warn!(
-                error = format!("{error:#}"),
-                "the journal cannot be written"
-            );
-        }
         let mut notices = Vec::new();
         let ours = hosts::features();
         if ours != join.features {

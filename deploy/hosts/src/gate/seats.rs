@@ -4,11 +4,12 @@
 //! the learner no longer counts on them, and others may have the numbers.
 
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use hosts::{Figures, Join, Said};
 use protocol::{MAX_ACTORS, Node, RolloutLayout, RolloutPublisher};
+use run::journal::{Entry, Journal};
 use run::{Folder, Lock};
 use tracing::{info, warn};
 
@@ -53,6 +54,7 @@ pub(super) struct House<'a> {
     pub(super) patience: Duration,
     /// The first number that is not an actor's on this machine.
     pub(super) first: u32,
+    pub(super) journal: &'a Mutex<Journal>,
 }
 
 impl Seats {
@@ -184,6 +186,8 @@ impl Guest {
         role.stand_for(&format!("on {}", self.name));
         let publisher = RolloutPublisher::new(house.node, number, house.layout, house.patience)
             .map_err(|error| Said::Refused(format!("a place for actor {number}: {error}")))?;
+        let mut journal = house.journal.lock().unwrap_or_else(PoisonError::into_inner);
+        journal.write(|| Entry::Passing(number));
         let seat = Seat {
             publisher: Mutex::new(publisher),
             _role: role,

@@ -1,16 +1,15 @@
 //! The account of a run: every rollout that was sent, and what it came to.
 
+mod way;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Entry, Key};
+use way::Ways;
 
 /// Most rollouts of one actor that a dying process can take along unread: two in the learner's
 /// buffer, one that it has taken out, one that is being sent.
 const IN_FLIGHT: usize = 4;
-
-/// Most rollouts of one actor that are lost when a process ends that passes them on: two in the buffer of each of its
-/// ends, one in its hands, one in its queue, one on its way.
-const PASSING: usize = 7;
 
 /// What all rollouts came to.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -40,14 +39,18 @@ pub fn account(journals: &[Vec<Entry>]) -> Account {
     let lives = Lives::of(journals);
     let mut rollouts: BTreeMap<Key, Known> = BTreeMap::new();
     let mut sent = BTreeSet::new();
-    let mut passers: BTreeMap<u32, usize> = BTreeMap::new();
+    let ways = Ways::of(journals);
     for entry in journals.iter().flatten() {
         match entry {
             Entry::Sending(key) => {
                 sent.insert(*key);
             }
             Entry::Sent(key, outcome) => {
-                rollouts.entry(*key).or_default().outcome = Some(outcome.clone());
+                // A carrier that gives a rollout up knows more than the actor, whose stream had it.
+                let known = &mut rollouts.entry(*key).or_default().outcome;
+                if known.as_deref().is_none_or(|before| before == "delivered") {
+                    *known = Some(outcome.clone());
+                }
             }
             Entry::Received(learner, iteration, key, fate) => {
                 let life = lives.number(*learner);
@@ -55,8 +58,11 @@ pub fn account(journals: &[Vec<Entry>]) -> Account {
                 let known = rollouts.entry(*key).or_default();
                 known.fates.push((life, lasts, fate.clone()));
             }
-            Entry::Begun(..) => {}
-            Entry::Passing(actor) => *passers.entry(*actor).or_default() += 1,
+            Entry::Begun(..)
+            | Entry::Carrying(_)
+            | Entry::Carried(_)
+            | Entry::Passing(_)
+            | Entry::Passed(_) => {}
         }
     }
     let mut account = Account {
@@ -65,18 +71,22 @@ pub fn account(journals: &[Vec<Entry>]) -> Account {
     };
     // What was received and never sent cannot be: the line is written before the send.
     account.uncounted += rollouts.keys().filter(|key| !sent.contains(key)).count() as u64;
-    let mut unread: BTreeMap<Gap, usize> = BTreeMap::new();
+    // Those that went missing in the same place share what the ends there excuse.
+    let mut unread: BTreeMap<(Gap, way::Place), usize> = BTreeMap::new();
     for key in &sent {
         match rollouts.get(key).and_then(Known::reason) {
             Some(Reason::Used) => account.used += 1,
             Some(Reason::Twice) => account.uncounted += 1,
             Some(Reason::Dropped(reason)) => account.drop(reason, 1),
-            None => *unread.entry(Gap::around(*key, &rollouts)).or_default() += 1,
+            None => {
+                let received = |key: &Key| rollouts.get(key).is_some_and(|k| !k.fates.is_empty());
+                let place = (Gap::around(*key, &rollouts), ways.place(*key, received));
+                *unread.entry(place).or_default() += 1;
+            }
         }
     }
-    for (gap, count) in unread {
-        let passers = passers.get(&gap.actor).copied().unwrap_or(0);
-        let excused = count.min(gap.room(lives.0.len()) + passers * PASSING);
+    for ((gap, place), count) in unread {
+        let excused = count.min(place.room(gap.room(lives.0.len())));
         account.drop("unread", excused as u64);
         account.uncounted += (count - excused) as u64;
     }
