@@ -245,11 +245,10 @@ impl Checkpoints {
         let iterations = self.list();
         let best = self.best();
         let old = &iterations[..iterations.len().saturating_sub(keep)];
-        let mut unwanted: Vec<PathBuf> = old
-            .iter()
-            .filter(|at| Some(**at) != best)
-            .map(|at| self.path(*at))
-            .collect();
+        for at in old.iter().filter(|at| Some(**at) != best) {
+            self.forget(*at)?;
+        }
+        let mut unwanted: Vec<PathBuf> = Vec::new();
         if let Ok(entries) = fs::read_dir(&self.folder) {
             let hidden = |path: &PathBuf| {
                 path.file_name()
@@ -271,11 +270,21 @@ impl Checkpoints {
     /// Removes those of later iterations: a run that goes on from an earlier one will write them anew,
     /// and until then they must not pass for the newest.
     pub fn forget_after(&self, iteration: u64) -> Result<(), CheckpointError> {
-        let later = self.list().into_iter().filter(|at| *at > iteration);
-        for path in later.map(|at| self.path(at)) {
-            remove_folder(&path).map_err(|source| CheckpointError::Io { path, source })?;
-        }
-        Ok(())
+        let mut later = self.list().into_iter().filter(|at| *at > iteration);
+        later.try_for_each(|at| self.forget(at))
+    }
+
+    /// Removes one. It is renamed first: an actor may be adding its robots at this moment, and a folder in which files
+    /// appear cannot be removed.
+    fn forget(&self, iteration: u64) -> Result<(), CheckpointError> {
+        let path = self.path(iteration);
+        let aside = self.folder.join(format!(".{iteration:08}.old"));
+        remove_folder(&aside)
+            .and_then(|()| match fs::rename(&path, &aside) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+                _ => remove_folder(&aside),
+            })
+            .map_err(|source| CheckpointError::Io { path, source })
     }
 
     fn inspect(&self, iteration: u64, shape: Option<&str>) -> Result<Checkpoint, Refusal> {

@@ -325,3 +325,27 @@ fn the_best_is_kept_beside_the_newest() {
     assert_eq!(checkpoints.best(), Some(20), "of equals the oldest");
     assert_eq!(checkpoints.list(), [20, 40, 50]);
 }
+
+#[test]
+fn one_is_removed_also_while_robots_are_added_to_it() {
+    let (_folder, checkpoints) = two();
+    let late = checkpoints.clone();
+    let (done, ended) = std::sync::mpsc::channel::<()>();
+    let adding = std::thread::spawn(move || {
+        let mut added = 0_u32;
+        while ended.try_recv() == Err(std::sync::mpsc::TryRecvError::Empty) {
+            for actor in 0..8 {
+                let robots = late.attach(20, &format!("actor-{actor}.bin"), b"robots");
+                added += u32::from(robots.is_ok());
+            }
+        }
+        added
+    });
+    for _ in 0..300 {
+        checkpoints.write(20, SHAPE, &[("a", b"b")]).unwrap();
+        checkpoints.forget_after(10).unwrap();
+        assert_eq!(checkpoints.list(), [10]);
+    }
+    drop(done);
+    assert!(adding.join().unwrap() > 0, "nothing was ever added");
+}
