@@ -8,6 +8,7 @@ use std::thread;
 use crate::harness::{Process, Runs, program, until};
 
 mod faults;
+mod refused;
 mod same;
 mod wire;
 

@@ -139,6 +139,21 @@ fn a_host_that_is_killed_whole_comes_back_with_its_numbers() {
 }
 
 #[test]
+fn a_run_whose_supervisor_is_killed_is_waited_for_by_its_hosts() {
+    let spread = Spread::new();
+    let (mut group, mut host) = begin(&spread, "overlapped");
+    for _ in 0..length("AMPCO_SUPERVISOR_KILLS", 3.0) as usize {
+        group.signal(Signal::KILL);
+        group.end();
+        group = spread.resume("spread", 2, &[]);
+        // Of all four: nobody has left.
+        whole_again(&spread, 2);
+        assert!(host.is_alive(), "{}", host.stderr.text());
+    }
+    end(&spread, group, host);
+}
+
+#[test]
 fn a_host_that_leaves_is_no_longer_counted_on() {
     let spread = Spread::new();
     let (mut group, mut host) = begin(&spread, "overlapped");

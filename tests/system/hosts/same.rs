@@ -10,9 +10,25 @@ fn ended(mut process: Process) {
 
 #[test]
 fn actors_on_other_machines_make_the_same_weights_also_over_a_stop_and_a_resume() {
+    same_wherever("fleet.physics=batched");
+}
+
+#[test]
+fn nor_does_it_matter_where_they_are_in_rapier() {
+    same_wherever("fleet.physics=rapier");
+}
+
+fn same_wherever(physics: &'static str) {
     let spread = Spread::new();
     let train = |iterations: &'static str| {
-        let arguments = ["--actors", "3", "--iterations", iterations];
+        let arguments = [
+            "--actors",
+            "3",
+            "--iterations",
+            iterations,
+            "--set",
+            physics,
+        ];
         [&arguments[..], &PATIENT[..]].concat()
     };
     let whole = spread.runs.train("whole", &train("8"));

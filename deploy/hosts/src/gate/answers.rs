@@ -231,8 +231,20 @@ impl Desk for Gate {
         let seat = lock(&self.seats).seat(&delivery.life, delivery.actor)?;
         let header = hosts::rollout_of(&delivery).map_err(|e| Said::Refused(e.to_string()))?;
         let layout = self.local.layout();
-        let sizes = header.layout(layout.lists, layout.len());
-        sizes.map_err(|error| Said::Refused(error.to_string()))?;
+        let ours = (layout.environments, layout.steps);
+        let theirs = (header.environments as usize, header.steps as usize);
+        if theirs != ours {
+            let said =
+                |(environments, steps)| format!("{environments} environments by {steps} steps");
+            return Err(Said::Refused(format!(
+                "actor {} sends {}, this run's configuration says {}",
+                header.actor,
+                said(theirs),
+                said(ours)
+            )));
+        }
+        let rows = header.layout(layout.lists, layout.len());
+        rows.map_err(|error| Said::Refused(error.to_string()))?;
         let gate = Arc::clone(&self);
         let (life, bytes) = (delivery.life, delivery.rows.len());
         let rows = delivery.rows;
