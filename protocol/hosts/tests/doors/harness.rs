@@ -1,6 +1,7 @@
 //! A gate that answers with constants, on a port of its own.
 
 use std::net::SocketAddr;
+use std::os::fd::AsFd;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::time::Duration;
@@ -70,6 +71,32 @@ pub(crate) struct Listening {
     pub(crate) run: TempDir,
 }
 
+/// A socket on loopback, and its address; or where a wire is to lie in between, in the namespace `AMPCO_FAR` (a file as
+/// `/run/netns/far`), which has the address `AMPCO_FAR_ADDRESS`.
+fn listener() -> (TcpListener, String) {
+    let bound = match std::env::var_os("AMPCO_FAR") {
+        None => std::net::TcpListener::bind("127.0.0.1:0").map(|bound| {
+            let address = bound.local_addr().expect("an address").to_string();
+            (bound, address)
+        }),
+        // A thread has a namespace of its own, and a socket keeps that of the thread that made it.
+        Some(far) => std::thread::spawn(move || {
+            let far = std::fs::File::open(far)?;
+            let network = rustix::thread::LinkNameSpaceType::Network;
+            rustix::thread::move_into_link_name_space(far.as_fd(), Some(network))?;
+            let bound = std::net::TcpListener::bind("0.0.0.0:0")?;
+            let host = std::env::var("AMPCO_FAR_ADDRESS").expect("its address");
+            let port = bound.local_addr()?.port();
+            Ok((bound, format!("{host}:{port}")))
+        })
+        .join()
+        .expect("no panic"),
+    };
+    let (bound, address) = bound.expect("a port");
+    bound.set_nonblocking(true).expect("a socket");
+    (TcpListener::from_std(bound).expect("a socket"), address)
+}
+
 /// Rollouts of the tests are smaller.
 pub(crate) const ROLLOUT: usize = 4 << 20;
 
@@ -81,8 +108,7 @@ impl Listening {
         };
         let run = tempfile::tempdir().expect("a folder");
         let passes = Passes::of(run.path(), "walk").expect("passes");
-        let listener = TcpListener::bind("127.0.0.1:0").await.expect("a port");
-        let address = listener.local_addr().expect("an address").to_string();
+        let (listener, address) = listener();
         let desk = Arc::new(Counting::default());
         let tls = passes.server().expect("TLS");
         let doors = Arc::new(Doors::new(listener, tls, Arc::clone(&desk), limits));

@@ -1,5 +1,6 @@
 //! Messages arrive, and a line that breaks is made again.
 
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
@@ -35,21 +36,32 @@ async fn a_rollout_arrives_and_is_acknowledged() {
     let gate = Listening::begin().await;
     let line = gate.line(hello());
     assert_eq!(line.joined().await.unwrap().numbers, [2, 3]);
-    let count: u64 = std::env::var("AMPCO_ROLLOUTS").map_or(3, |n| n.parse().unwrap());
+    // As many actors at a time, each with one rollout on its way.
+    let number = |name: &str, short| std::env::var(name).map_or(short, |n| n.parse().unwrap());
+    let (each, actors): (u64, u64) = (number("AMPCO_ROLLOUTS", 3), number("AMPCO_ACTORS", 1));
+    let count = each * actors;
+    let line = Arc::new(line);
     let (began, before) = (Instant::now(), busy());
-    for _ in 0..count {
-        let answer: Delivered = line
-            .call("Deliver", delivery(ROLLOUT), 10 * SECOND)
-            .await
-            .unwrap();
-        assert!(answer.taken);
+    let mut calls = tokio::task::JoinSet::new();
+    for _ in 0..actors {
+        let line = Arc::clone(&line);
+        calls.spawn(async move {
+            for _ in 0..each {
+                let answer: Result<Delivered, _> =
+                    line.call("Deliver", delivery(ROLLOUT), 60 * SECOND).await;
+                assert!(answer.unwrap().taken);
+            }
+        });
+    }
+    while let Some(sent) = calls.join_next().await {
+        sent.unwrap();
     }
     let (seconds, gigabytes) = (
         began.elapsed().as_secs_f64(),
         (count * ROLLOUT as u64) as f64 / 1e9,
     );
     println!(
-        "{:.0} MB/s, both ends together {:.2} CPU-s/GB",
+        "{:.1} MB/s, both ends together {:.2} CPU-s/GB",
         1e3 * gigabytes / seconds,
         (busy() - before) / gigabytes
     );
