@@ -1,5 +1,6 @@
 //! Whoever is killed or stopped on whichever machine: the run goes on, and every rollout is accounted for.
 
+use std::fs;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -61,6 +62,17 @@ fn end(spread: &Spread, mut group: Process, mut host: Process) -> journal::Accou
     account
 }
 
+/// Resident memory of a process, kB: `VmRSS` as it is, `VmHWM` the most so far (proc_pid_status(5)).
+fn memory(pid: Pid, which: &str) -> u64 {
+    let status = fs::read_to_string(format!("/proc/{}/status", pid.as_raw_pid()));
+    let status = status.expect("the process is alive");
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix(which)?.strip_prefix(':'));
+    let number = line.and_then(|line| line.split_whitespace().next());
+    number.and_then(|kb| kb.parse().ok()).expect("kB")
+}
+
 fn kill(pid: Pid) {
     kill_process(pid, Signal::KILL).expect("it was alive");
 }
@@ -77,14 +89,28 @@ fn a_gate_that_is_killed_again_and_again_is_made_good() {
     let spread = Spread::new();
     let (group, host) = begin(&spread, "overlapped");
     let run = spread.runs.run("spread");
-    for _ in 0..length("AMPCO_GATE_KILLS", 4.0) as usize {
+    let carrier = holder(&spread.hosts()[0], "carrier").expect("alive");
+    let rest = memory(carrier, "VmRSS");
+    let mut longest = Duration::ZERO;
+    let kills = length("AMPCO_GATE_KILLS", 4.0) as usize;
+    for _ in 0..kills {
         let gate = until("a gate", || holder(&run, "gate"));
+        let killed = Instant::now();
         kill(gate);
         another(&run, "gate", gate);
-        let took = whole_again(&spread, 2);
-        assert!(took < Duration::from_secs(20), "{took:?}");
+        whole_again(&spread, 2);
+        longest = longest.max(killed.elapsed());
     }
-    end(&spread, group, host);
+    assert!(longest < Duration::from_secs(20), "{longest:?}");
+    let most = memory(carrier, "VmHWM");
+    assert!(
+        most <= 2 * rest,
+        "carrier: {rest} kB at rest, {most} at most"
+    );
+    let account = end(&spread, group, host);
+    println!(
+        "{kills} gates killed: whole again after at most {longest:?}; carrier {rest} kB at rest, {most} at most; {account:?}"
+    );
 }
 
 #[test]
@@ -107,10 +133,18 @@ fn a_learner_that_stands_still_and_one_that_is_killed_are_waited_for() {
     let (group, host) = begin(&spread, "overlapped");
     let run = spread.runs.run("spread");
     let learner = holder(&run, "learner").expect("alive");
+    let carrier = holder(&spread.hosts()[0], "carrier").expect("alive");
+    let passing = [holder(&run, "gate").expect("alive"), carrier];
+    let rest = passing.map(|pid| memory(pid, "VmRSS"));
     kill_process(learner, Signal::STOP).expect("alive");
     thread::sleep(Duration::from_secs_f64(length("AMPCO_STANDSTILL", 4.0)));
     kill_process(learner, Signal::CONT).expect("alive");
-    whole_again(&spread, 2);
+    let took = whole_again(&spread, 2);
+    let most = passing.map(|pid| memory(pid, "VmHWM"));
+    for (rest, most) in rest.iter().zip(&most) {
+        assert!(*most <= 2 * rest, "{rest} kB at rest, {most} at most");
+    }
+    println!("whole again after {took:?}; gate and carrier {rest:?} kB at rest, {most:?} at most");
     until_iteration(&run, 6);
     kill(learner);
     another(&run, "learner", learner);
@@ -130,11 +164,13 @@ fn a_host_that_is_killed_whole_comes_back_with_its_numbers() {
         let _ = kill_process(pid, Signal::KILL);
     }
     host.end();
+    let began = Instant::now();
     let host = spread.join("spread", 2);
     until("the same numbers", || {
         host.stderr.text().contains("actors 2, 3").then_some(())
     });
     whole_again(&spread, 2);
+    println!("whole again {:?} after its start", began.elapsed());
     end(&spread, group, host);
 }
 
@@ -145,9 +181,11 @@ fn a_run_whose_supervisor_is_killed_is_waited_for_by_its_hosts() {
     for _ in 0..length("AMPCO_SUPERVISOR_KILLS", 3.0) as usize {
         group.signal(Signal::KILL);
         group.end();
+        let began = Instant::now();
         group = spread.resume("spread", 2, &[]);
         // Of all four: nobody has left.
         whole_again(&spread, 2);
+        println!("whole again {:?} after the resume", began.elapsed());
         assert!(host.is_alive(), "{}", host.stderr.text());
     }
     end(&spread, group, host);
