@@ -1,5 +1,7 @@
 //! A run that spans machines: here one machine plays all of them, over loopback or between namespaces.
 
+#![expect(clippy::print_stdout, reason = "figures to be read")]
+
 use std::net::TcpListener;
 use std::path::PathBuf;
 use std::process::Command;
