@@ -1,7 +1,9 @@
 //! Where the actors are changes no bit.
 
+use rustix::process::{Signal, kill_process};
+
 use super::Spread;
-use crate::harness::{Process, metrics, until};
+use crate::harness::{Process, bytes, holder, metrics, until, until_iteration, without_timing};
 use crate::repeat::{PATIENT, assert_same};
 
 fn ended(mut process: Process) {
@@ -67,4 +69,52 @@ fn same_wherever(physics: &'static str) {
         });
         assert!(left.is_empty());
     }
+}
+
+#[test]
+fn nor_does_it_matter_that_the_learner_s_machine_was_killed_whole() {
+    const LAST: &str = "40";
+    let spread = Spread::new();
+    let arguments = ["--actors", "3", "--iterations", LAST, "--set"];
+    let arguments = [&arguments[..], &["checkpoint_every=3"], &PATIENT[..]].concat();
+    ended(spread.runs.train("whole", &arguments));
+
+    let mut group = spread.train("killed", 1, &arguments);
+    let host = spread.join("killed", 2);
+    let run = spread.runs.run("killed");
+    until_iteration(&run, 7);
+    let roles = ["learner", "gate", "actor-0", "scheduler"];
+    let others: Vec<_> = roles.iter().filter_map(|role| holder(&run, role)).collect();
+    group.signal(Signal::KILL);
+    for pid in others {
+        // Told to end by the supervisor's death, it may have ended.
+        let _ = kill_process(pid, Signal::KILL);
+    }
+    group.end();
+    let reached = metrics(&run).len();
+    assert!(reached < 40, "killed too late: iteration {reached}");
+    ended(spread.resume("killed", 1, &["--iterations", LAST]));
+    ended(host);
+    let checkpoint = |name: &str| spread.runs.run(name).join("checkpoints/00000040");
+    for file in [
+        "policy.bin",
+        "learning.bin",
+        "actor-0.bin",
+        "actor-1.bin",
+        "actor-2.bin",
+    ] {
+        let [one, other] = ["whole", "killed"].map(|name| bytes(&checkpoint(name).join(file)));
+        assert!(one == other, "{file} differs");
+    }
+    // What was on its way to the killed learner arrives at the next, which counts it and leaves it.
+    let lines = |name: &str| -> Vec<_> {
+        let lines = metrics(&spread.runs.run(name)).into_iter();
+        let told = lines.map(|line| {
+            let mut line = without_timing(line);
+            line.as_object_mut().expect("a record").remove("stale");
+            line
+        });
+        told.collect()
+    };
+    assert_eq!(lines("whole"), lines("killed"));
 }
